@@ -7,6 +7,7 @@ mod diagnose_real;
 mod drives;
 mod embedded;
 mod formula;
+mod fuzz_targets;
 mod monte_carlo;
 mod omni_real;
 mod paper;

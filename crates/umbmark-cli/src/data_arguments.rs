@@ -4,7 +4,10 @@ use std::path::{Path, PathBuf};
 
 use umbmark_core::dataset::Dataset;
 use umbmark_core::drive::Robot;
-use umbmark_io::{DatasetError, Topics};
+use umbmark_core::evidence::memory_of_tests;
+use umbmark_io::{DatasetError, Topics, memory_to_read};
+
+use crate::Session;
 
 /// Where the measurements are.
 #[derive(Debug, clap::Args)]
@@ -38,7 +41,25 @@ impl DataArguments {
     }
 
     /// Reads them.
-    pub fn load(&self) -> Result<Dataset, DatasetError> {
+    pub fn load(&self, session: &Session) -> anyhow::Result<Dataset> {
+        self.say_needs(session)?;
+        Ok(self.read()?)
+    }
+
+    /// Reads them to test error sources.
+    pub fn load_to_test(&self, session: &Session) -> anyhow::Result<Dataset> {
+        let data = self.load(session)?;
+        session.needs(memory_of_tests(&data))?;
+        Ok(data)
+    }
+
+    /// Says how much memory reading needs, or refuses it.
+    pub fn say_needs(&self, session: &Session) -> anyhow::Result<()> {
+        session.needs(self.places.iter().map(memory_to_read).sum())
+    }
+
+    /// Reads them, whatever that needs.
+    pub fn read(&self) -> Result<Dataset, DatasetError> {
         umbmark_io::load_together(&self.places, &self.topics())
     }
 
@@ -69,5 +90,13 @@ impl TopicArguments {
     /// Reads a dataset.
     pub fn load(&self, place: &Path) -> Result<Dataset, DatasetError> {
         umbmark_io::load_with(place, &self.topics())
+    }
+
+    /// Reads a dataset to test error sources: what that needs is said first, or refused.
+    pub fn load_to_test(&self, place: &Path, session: &Session) -> anyhow::Result<Dataset> {
+        session.needs(memory_to_read(place))?;
+        let data = self.load(place)?;
+        session.needs(memory_of_tests(&data))?;
+        Ok(data)
     }
 }

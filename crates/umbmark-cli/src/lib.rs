@@ -4,6 +4,7 @@
 //! computed. Results go to stdout, messages and progress to stderr.
 
 mod answer;
+mod budget;
 mod checkpoint_flags;
 mod contents_report;
 mod data_arguments;
@@ -83,7 +84,9 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     let mut session = Session::new(cli.session);
-    let outcome = cli.verb.run(&mut session).and_then(|code| Ok(session.flush().map(|()| code)?));
+    let begun = session.begin();
+    let outcome =
+        begun.and_then(|()| cli.verb.run(&mut session)).and_then(|code| Ok(session.flush().map(|()| code)?));
     match outcome {
         Ok(_) if session.was_interrupted() => ExitCode::from(session::INTERRUPTED),
         Ok(code) => code,

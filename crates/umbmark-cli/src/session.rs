@@ -10,6 +10,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use umbmark_core::watch::Watch;
 use umbmark_plot::render::terminal::Look;
 
+use crate::budget::Budget;
 use crate::files;
 
 /// Exit code of work that was stopped: what was done until then is told, marked partial.
@@ -34,6 +35,10 @@ pub struct Options {
     #[arg(long, global = true, value_name = "N", value_parser = crate::numbers::whole_in::<u16>(1..=1024))]
     pub threads: Option<u16>,
 
+    /// Memory to use at most: work that needs more is refused, or stopped with an error [default: half of what the machine has]
+    #[arg(long, global = true, value_name = "SIZE", value_parser = crate::budget::size_argument)]
+    pub memory: Option<u64>,
+
     /// No progress bars
     #[arg(long, global = true)]
     pub quiet: bool,
@@ -49,6 +54,8 @@ pub struct Session {
     options: Options,
     out: Output,
     interrupted: Arc<AtomicBool>,
+    /// Whether the verb looks at that.
+    caught: Arc<AtomicBool>,
 }
 
 /// Standard output, buffered; standard error as soon as a file goes to standard output. Names of files and topics may hold anything: nothing
@@ -70,7 +77,44 @@ impl Write for Output {
 
 impl Session {
     pub(crate) fn new(options: Options) -> Session {
-        Session { options, out: Output(BufWriter::new(io::stdout())), interrupted: Arc::default() }
+        Session {
+            options,
+            out: Output(BufWriter::new(io::stdout())),
+            interrupted: Arc::default(),
+            caught: Arc::default(),
+        }
+    }
+
+    /// What holds for every verb: a wish to stop leaves no unfinished file, and no more memory is taken than is allowed.
+    pub(crate) fn begin(&self) -> anyhow::Result<()> {
+        let (flag, caught) = (Arc::clone(&self.interrupted), Arc::clone(&self.caught));
+        hang_up::keep_ignored(|| {
+            ctrlc::set_handler(move || {
+                let is_second = flag.swap(true, Ordering::SeqCst);
+                if is_second || !caught.load(Ordering::SeqCst) {
+                    umbmark_io::take_away_unfinished();
+                    std::process::exit(INTERRUPTED.into());
+                }
+            })
+        })
+        .context("cannot catch Ctrl-C")?;
+        if let Some(budget) = self.budget() {
+            budget.keep();
+        }
+        Ok(())
+    }
+
+    fn budget(&self) -> Option<Budget> {
+        Budget::of(self.options.memory)
+    }
+
+    /// Says that work needs much memory, or refuses what needs more than is allowed \[bytes\].
+    pub fn needs(&self, bytes: u64) -> anyhow::Result<()> {
+        let said = self.budget().map(|budget| budget.allow(bytes)).transpose()?.flatten();
+        if let Some(text) = said.filter(|_| !self.options.quiet) {
+            self.message("note", &text);
+        }
+        Ok(())
     }
 
     /// Whether a JSON document is wanted.
@@ -132,7 +176,7 @@ impl Session {
 
     /// Runs `work` on the threads that were asked for: Ctrl-C stops it, and a bar of a hundred steps of `unit` shows how far it is.
     pub fn watched<R: Send>(&self, unit: &'static str, work: impl FnOnce(&Watch) -> R + Send) -> anyhow::Result<R> {
-        let stop = self.catch_interrupt()?;
+        let stop = self.catch_interrupt();
         self.told(unit, |progress| work(&Watch { stop: &stop, progress }))
     }
 
@@ -152,16 +196,10 @@ impl Session {
         })
     }
 
-    /// A flag that Ctrl-C sets from now on, instead of killing; a second one kills.
-    pub fn catch_interrupt(&self) -> anyhow::Result<Arc<AtomicBool>> {
-        let flag = Arc::clone(&self.interrupted);
-        ctrlc::set_handler(move || {
-            if flag.swap(true, Ordering::SeqCst) {
-                std::process::exit(INTERRUPTED.into());
-            }
-        })
-        .context("cannot catch Ctrl-C")?;
-        Ok(Arc::clone(&self.interrupted))
+    /// A flag that Ctrl-C sets from now on, instead of ending the process; a second one ends it.
+    pub fn catch_interrupt(&self) -> Arc<AtomicBool> {
+        self.caught.store(true, Ordering::SeqCst);
+        Arc::clone(&self.interrupted)
     }
 
     /// Whether somebody wished it to stop.
@@ -173,6 +211,30 @@ impl Session {
     pub fn progress(&self, total: u64, unit: &'static str) -> Progress {
         let shown = !self.options.quiet && io::stderr().is_terminal();
         Progress { bar: None, total, unit, began: Instant::now(), shown }
+    }
+}
+
+/// The hang-up of a terminal, which `nohup` has a command ignore.
+mod hang_up {
+    /// Sets the handlers of signals and has a hang-up that was ignored before be ignored still.
+    #[cfg(unix)]
+    pub fn keep_ignored<R>(set: impl FnOnce() -> R) -> R {
+        let mut before = std::mem::MaybeUninit::<libc::sigaction>::zeroed();
+        // SAFETY: with no new action, the call only writes the present one to `before`, which is of its type and all zeros until then.
+        let known = unsafe { libc::sigaction(libc::SIGHUP, std::ptr::null(), before.as_mut_ptr()) } == 0;
+        // SAFETY: zeros are a valid `sigaction`, so it is initialised whether or not the call wrote to it.
+        let is_ignored = known && unsafe { before.assume_init() }.sa_sigaction == libc::SIG_IGN;
+        let set = set();
+        if is_ignored {
+            // SAFETY: SIG_IGN runs no code of ours.
+            unsafe { libc::signal(libc::SIGHUP, libc::SIG_IGN) };
+        }
+        set
+    }
+
+    #[cfg(not(unix))]
+    pub fn keep_ignored<R>(set: impl FnOnce() -> R) -> R {
+        set()
     }
 }
 

@@ -98,7 +98,7 @@ pub fn run(
     let begin = |checkpoint: &Checkpoint| checkpoint.begin_sweep(&sweep).map_err(with_remedy);
     let mut points = files.checkpoint.map(begin).transpose()?.unwrap_or_default();
     let mut progress = session.progress(sweep.points(), "points");
-    let stop = session.catch_interrupt()?;
+    let stop = session.catch_interrupt();
     let mut failure = None;
     session.on_threads(|| {
         sweep.run(points.len() as u64, &stop, |more| {

@@ -97,3 +97,34 @@ fn a_report_is_whole_and_says_what_is_missing() {
     assert!(page.contains("<strong>PARTIAL.</strong>") && page.trim_end().ends_with("</html>"));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
+
+/// What a process does about signals, by their numbers: which it ignores or catches.
+#[cfg(target_os = "linux")]
+fn signals(process: u32, kind: &str) -> u64 {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap();
+    let mask = status.lines().find_map(|line| line.strip_prefix(kind)?.strip_prefix(':')).unwrap();
+    u64::from_str_radix(mask.trim(), 16).unwrap()
+}
+
+/// `nohup umbmark mc ...` goes on when the terminal closes.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_hang_up_that_is_to_be_ignored_is_ignored() {
+    const HANG_UP: u64 = 1;
+    const INTERRUPT: u64 = 1 << 1;
+    for (shell, kind) in [("trap '' HUP; ", "SigIgn"), ("", "SigCgt")] {
+        let script = format!("{shell}exec \"$0\" mc -n 100000000");
+        let mut command = Command::new("sh");
+        command.args(["-c", &script, env!("CARGO_BIN_EXE_umbmark")]).stdout(Stdio::null()).stderr(Stdio::null());
+        let mut child = command.spawn().unwrap();
+        // Until it catches Ctrl-C.
+        while signals(child.id(), "SigCgt") & INTERRUPT == 0 {
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        std::thread::sleep(Duration::from_millis(50));
+        let found = signals(child.id(), kind) & HANG_UP;
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert_eq!(found, HANG_UP, "{kind}");
+    }
+}

@@ -9,6 +9,7 @@ mod drives;
 pub(crate) mod ends;
 mod error;
 mod fitted;
+mod memory;
 pub(crate) mod noise_shape;
 mod ratio;
 pub(crate) mod tracks;
@@ -26,6 +27,7 @@ pub(crate) use ends::Ends;
 pub use error::FitError;
 pub(crate) use fitted::correlations;
 pub use fitted::{Estimate, Fit, fit, fit_to_returns};
+pub use memory::memory_of_tests;
 pub(crate) use ratio::{FAR_FIT, STARTS, is_possible};
 
 /// How much of the runs was observed.

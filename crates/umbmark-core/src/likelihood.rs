@@ -26,6 +26,7 @@ pub(crate) use beginning::{FAR, of_reference, ratios, stands_for_the_reference};
 pub use fitted::{Fitted, Outlier};
 pub use fitting::{NUISANCE, USUAL_NOISE};
 pub use noise::Noise;
+pub(crate) use observed::BLOCK;
 pub use observed::{Block, Column, Growth, Gyro, Observed, ObservedRun, Stretch};
 pub(crate) use products::{ABSORBED, ScaledCholesky, gram, scaled_cholesky, share_left, solver};
 pub use whiten::{Disturbance, Whitened};

@@ -1,5 +1,6 @@
 //! Files that one process writes again and again: a second process is told so.
 
+use crate::unfinished::Unfinished;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -11,6 +12,7 @@ use std::path::{Path, PathBuf};
 pub struct Lock {
     file: File,
     path: PathBuf,
+    _unfinished: Unfinished,
 }
 
 /// Another process has the lock.
@@ -33,14 +35,14 @@ impl Lock {
         for _ in 0..100 {
             let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
             let Ok(mut file) = opened else { return Ok(None) };
-            match file.try_lock() {
-                Ok(()) if is_at(&file, &path) => {
+            match Unfinished::begin(|| file.try_lock().map(|()| &path), |path| path) {
+                Ok((_, _unfinished)) if is_at(&file, &path) => {
                     let said = file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id()));
                     // Who holds it is a courtesy.
                     drop(said);
-                    return Ok(Some(Lock { file, path }));
+                    return Ok(Some(Lock { file, path, _unfinished }));
                 }
-                Ok(()) => {}
+                Ok(_) => {}
                 Err(TryLockError::WouldBlock) => {
                     let mut text = String::new();
                     let read = file.rewind().and_then(|()| file.read_to_string(&mut text));

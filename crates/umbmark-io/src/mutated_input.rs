@@ -3,6 +3,8 @@
 //!
 //! `UMBMARK_TEST_CASES=1000000` damages each of the files a million times and prints how many were read.
 
+mod damage;
+
 use super::closures::{Closure, Marks, closures};
 use super::error::DatasetError;
 use super::filled_in::drop_filled_in;
@@ -15,6 +17,7 @@ use super::sheet::Rows;
 use super::source::Source;
 use super::stale::drop_stale;
 use super::start_frame::move_to_start;
+pub(super) use damage::damage;
 use std::io::Read;
 use umbmark_core::dataset::TickLog;
 use umbmark_core::drive::{DriveKind, Robot};
@@ -25,51 +28,6 @@ use umbmark_core::synchronise::synchronise;
 /// How often each file is damaged.
 fn rounds() -> u64 {
     std::env::var("UMBMARK_TEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(20_000)
-}
-
-/// Pieces that parsers trip over.
-const PIECES: [&str; 20] = [
-    ",",
-    "\n",
-    "\r\n",
-    "\"",
-    "#",
-    "nan",
-    "-inf",
-    "1e308",
-    "-1e-308",
-    "9007199254740993",
-    "=",
-    "[",
-    "]]",
-    "{",
-    "\u{feff}",
-    "\0",
-    "ä",
-    ";",
-    "",
-    "-0",
-];
-
-/// `good` with up to five bytes changed, pieces put in, or parts cut out or doubled.
-pub(super) fn damage(good: &[u8], stream: &mut Stream) -> Vec<u8> {
-    let mut bytes = good.to_vec();
-    let mut below = |n: usize| ((stream.uniform() * n as f64) as usize).min(n.saturating_sub(1));
-    for _ in 0..=below(5) {
-        let (a, b) = (below(bytes.len() + 1), below(bytes.len() + 1));
-        let (a, b) = (a.min(b), a.max(b));
-        match below(5) {
-            0 if a < bytes.len() => bytes[a] = below(256) as u8,
-            1 => drop(bytes.splice(a..a, PIECES[below(PIECES.len())].bytes())),
-            2 => drop(bytes.splice(a..b.min(a + 12), PIECES[below(PIECES.len())].bytes())),
-            3 => drop(bytes.drain(a..b)),
-            _ => {
-                let copy = bytes[a..b].to_vec();
-                drop(bytes.splice(a..a, copy));
-            }
-        }
-    }
-    bytes
 }
 
 /// Damages a file many times; says how often it was still read.

@@ -3,6 +3,7 @@
 use super::error::DatasetError;
 use super::layout::csv::{RETURNS, RUNS};
 use super::remedy::Remedy;
+use super::unfinished::Unfinished;
 use super::whole_file::{Place, WholeFile};
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -46,10 +47,9 @@ fn lay<Checked>(
     check: impl FnOnce(&Path) -> Result<Checked, DatasetError>,
 ) -> Result<Checked, DatasetError> {
     let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let beside = temporary_folder(parent).map_err(|error| unwritable(parent, &error))?;
+    let (beside, _unfinished) = temporary_folder(parent).map_err(|error| unwritable(parent, &error))?;
     for (name, bytes) in files {
-        let file = beside.path().join(name);
-        write_file(&file, bytes.as_ref()).map_err(|error| unwritable(&folder.join(name), &error))?;
+        write_file(beside.path(), name, bytes.as_ref()).map_err(|error| unwritable(&folder.join(name), &error))?;
     }
     let checked = check(beside.path())?;
     if !folder.exists() {
@@ -74,7 +74,7 @@ fn place(whole: &Path, to: &Path) -> std::io::Result<()> {
 }
 
 /// A new folder with the rights that the user's folders have.
-fn temporary_folder(parent: &Path) -> std::io::Result<tempfile::TempDir> {
+fn temporary_folder(parent: &Path) -> std::io::Result<(tempfile::TempDir, Unfinished)> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".umbmark-");
     #[cfg(unix)]
@@ -82,12 +82,20 @@ fn temporary_folder(parent: &Path) -> std::io::Result<tempfile::TempDir> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(std::fs::Permissions::from_mode(0o777));
     }
-    builder.tempdir_in(parent)
+    Unfinished::begin(|| builder.tempdir_in(parent), |folder| folder.path())
 }
 
-fn write_file(file: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    file.parent().map_or(Ok(()), std::fs::create_dir_all)?;
-    let mut handle = std::fs::File::create(file)?;
+/// Writes a file to a folder. A folder that was taken away stays away.
+fn write_file(folder: &Path, name: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let mut place = folder.to_owned();
+    for part in name.parent().into_iter().flat_map(Path::components) {
+        place.push(part);
+        match std::fs::create_dir(&place) {
+            Err(error) if error.kind() != std::io::ErrorKind::AlreadyExists => return Err(error),
+            _ => {}
+        }
+    }
+    let mut handle = std::fs::File::create(folder.join(name))?;
     handle.write_all(bytes)?;
     handle.sync_all()
 }

@@ -4,6 +4,7 @@ use super::error::DatasetError;
 use super::layout::csv::ROBOT;
 use super::layout::ending_of_messages;
 use super::source::unreadable;
+use super::unfinished::Unfinished;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -15,6 +16,8 @@ const HEAD: u64 = 32;
 pub(super) struct Spooled {
     /// Holds the copy, and is deleted with it.
     folder: tempfile::TempDir,
+    /// Of the folder.
+    _unfinished: Unfinished,
     /// The copy.
     pub path: PathBuf,
     /// What messages call it.
@@ -32,7 +35,8 @@ impl Spooled {
         let failed = |error: std::io::Error| unreadable(Path::new(&name), &error);
         let mut input: Box<dyn Read> =
             if is_stdin { Box::new(std::io::stdin().lock()) } else { Box::new(File::open(path).map_err(failed)?) };
-        let folder = tempfile::Builder::new().prefix("umbmark-").tempdir().map_err(failed)?;
+        let made = || tempfile::Builder::new().prefix("umbmark-").tempdir();
+        let (folder, _unfinished) = Unfinished::begin(made, |folder| folder.path()).map_err(failed)?;
         let mut head = Vec::new();
         input.by_ref().take(HEAD).read_to_end(&mut head).map_err(failed)?;
         let copy = folder.path().join(format!("log.{}", ending_of_messages(&head).unwrap_or("csv")));
@@ -42,7 +46,7 @@ impl Spooled {
         if let Some(robot) = beside.iter().find(|robot| robot.is_file()) {
             std::fs::copy(robot, folder.path().join(ROBOT)).map_err(|error| unreadable(robot, &error))?;
         }
-        Ok(Some(Spooled { folder, path: copy, name }))
+        Ok(Some(Spooled { folder, _unfinished, path: copy, name }))
     }
 
     /// A message in which the copy has the name of the pipe.

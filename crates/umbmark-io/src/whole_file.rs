@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
 use crate::Existing;
+use crate::unfinished::Unfinished;
 
 /// A file that appears under its name only when it is whole.
 #[derive(Debug)]
@@ -22,7 +23,7 @@ pub struct WholeFile {
 #[derive(Debug)]
 enum Target {
     /// A regular file, or a new one: written beside `place` and renamed.
-    Beside { place: PathBuf, file: BufWriter<File>, beside: TempPath, existing: Existing },
+    Beside { place: PathBuf, file: BufWriter<File>, beside: TempPath, existing: Existing, unfinished: Unfinished },
     /// What keeps its identity, and has no half.
     Through(BufWriter<Sink>),
 }
@@ -139,21 +140,31 @@ impl WholeFile {
                 let mut builder = tempfile::Builder::new();
                 #[cfg(unix)]
                 builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-                let beside = builder.tempfile_in(folder);
-                let (file, beside) =
-                    beside.map_err(|error| FileError::Folder { folder: folder.to_owned(), error })?.into_parts();
-                Target::Beside { place, file: BufWriter::new(file), beside, existing }
+                let beside = Unfinished::begin(|| builder.tempfile_in(folder), |beside| beside.path());
+                let failed = |error| FileError::Folder { folder: folder.to_owned(), error };
+                let (beside, unfinished) = beside.map_err(failed)?;
+                let (file, beside) = beside.into_parts();
+                Target::Beside { place, file: BufWriter::new(file), beside, existing, unfinished }
             }
         };
         Ok(WholeFile { path: path.to_owned(), target })
+    }
+
+    /// Has the disk hold what was written: several files can then be given their names at once.
+    pub fn secure(&mut self) -> Result<(), FileError> {
+        let secured = match &mut self.target {
+            Target::Beside { file, .. } => file.flush().and_then(|()| file.get_ref().sync_all()),
+            Target::Through(out) => out.flush(),
+        };
+        secured.map_err(|error| FileError::Write { file: self.path.clone(), error })
     }
 
     /// Gives the file its name.
     pub fn finish(self) -> Result<(), FileError> {
         let written = match self.target {
             Target::Through(mut out) => out.flush(),
-            Target::Beside { place, file, beside, existing } => {
-                file.into_inner().map_err(io::IntoInnerError::into_error).and_then(|file| {
+            Target::Beside { place, file, beside, existing, unfinished } => {
+                let written = file.into_inner().map_err(io::IntoInnerError::into_error).and_then(|file| {
                     file.sync_all()?;
                     drop(file);
                     let named = match existing {
@@ -161,7 +172,9 @@ impl WholeFile {
                         Existing::Replace => beside.persist(&place),
                     };
                     named.map_err(|error| error.error)
-                })
+                });
+                drop(unfinished);
+                written
             }
         };
         written.map_err(|error| FileError::Write { file: self.path, error })

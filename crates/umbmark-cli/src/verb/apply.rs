@@ -88,7 +88,8 @@ impl Arguments {
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let name = arguments.model.display();
     let own = ModelFile::read(&arguments.model, None)?.model;
-    let alone = arguments.data.load();
+    arguments.data.say_needs(session)?;
+    let alone = arguments.data.read();
     // Positions of joints and odometry become counts by the numbers of a robot, counts do without.
     let (data, is_own) = match alone {
         Err(DatasetError::NoRobot(_)) => (arguments.data.load_of(own.robot())?, true),
@@ -151,6 +152,7 @@ fn write_all(
         let bytes = format.bytes(corrected).map_err(failed)?;
         let mut whole = begin(file, arguments.force)?;
         whole.write_all(&bytes).map_err(failed)?;
+        whole.secure()?;
         Ok::<_, FileError>(whole)
     };
     let whole = corrected.iter().zip(files).map(|((_, corrected), file)| write(file, corrected));

@@ -112,7 +112,7 @@ impl Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = arguments.data.load()?;
+    let data = arguments.data.load_to_test(session)?;
     if !data.nominal_robot()?.drive.kind().has_axle_wheels() {
         return gears::run(&arguments, &data, session);
     }

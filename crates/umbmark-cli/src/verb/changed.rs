@@ -42,8 +42,8 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let [before, after] = [&arguments.before, &arguments.after].map(|place| arguments.topics.load(place));
-    let (before, after) = (before?, after?);
+    let before = arguments.topics.load_to_test(&arguments.before, session)?;
+    let after = arguments.topics.load_to_test(&arguments.after, session)?;
     let options = arguments.test.options(session);
     let start = match &arguments.model {
         Some(file) => read_model(file, &before, session)?,

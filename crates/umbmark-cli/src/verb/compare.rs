@@ -42,7 +42,7 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = arguments.data.load()?;
+    let data = arguments.data.load_to_test(session)?;
     let options = arguments.test.options(session);
     for warning in data.warnings.iter().filter(|_| !session.json()) {
         session.message("warning", warning);

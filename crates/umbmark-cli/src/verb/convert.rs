@@ -35,7 +35,7 @@ fn about() -> String {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = arguments.data.load()?;
+    let data = arguments.data.load(session)?;
     let lost = arguments.output.write(&data)?;
     if session.json() {
         session.print_json(&document(&arguments.output, &data, &lost))?;

@@ -44,7 +44,7 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = arguments.data.load()?;
+    let data = arguments.data.load_to_test(session)?;
     let model = model_of(arguments.model.as_deref(), &data, session)?;
     let options = arguments.test.options(session);
     let diagnosis = session.on_threads(|| diagnose(&data, &model, &options))??;

@@ -64,7 +64,7 @@ fn fixed(text: &str) -> Result<Fixed, String> {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = arguments.data.load()?;
+    let data = arguments.data.load(session)?;
     let mut model = model_of(arguments.model.as_deref(), &data, session)?;
     for effect in &arguments.add {
         model.add(effect)?.free = true;

@@ -34,7 +34,8 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let read = arguments.data.load();
+    arguments.data.say_needs(session)?;
+    let read = arguments.data.read();
     let contents = contents(&arguments.data, &read)?;
     // Logs alone do not make a dataset before their robot is known.
     let (data, problem) = match read {

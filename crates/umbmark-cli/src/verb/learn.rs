@@ -50,7 +50,7 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = arguments.data.load()?;
+    let data = arguments.data.load_to_test(session)?;
     let options = Options { law: arguments.law as usize, ..arguments.test.options(session) };
     let start = arguments.model.as_deref().map(|file| read_model(file, &data, session)).transpose()?;
     let start = match start {

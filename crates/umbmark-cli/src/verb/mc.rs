@@ -93,7 +93,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         arguments.out.as_deref().map(|file| TrialsFile::create(file, &metrics, arguments.force)).transpose()?;
     let (before, all) = (written.ensemble.trials(), arguments.shard.trials(study.trials));
     let mut progress = session.progress(all.end - all.start, "trials");
-    let stop = session.catch_interrupt()?;
+    let stop = session.catch_interrupt();
     let began = Instant::now();
     let mut precise = false;
     let mut failure = None;

@@ -80,7 +80,7 @@ fn width(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = arguments.data.load()?;
+    let data = arguments.data.load(session)?;
     for warning in data.warnings.iter().filter(|_| !session.json()) {
         session.message("warning", warning);
     }

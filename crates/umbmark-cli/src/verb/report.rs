@@ -60,7 +60,7 @@ fn html(text: &str) -> Result<PathBuf, String> {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let stop = session.catch_interrupt()?;
+    let stop = session.catch_interrupt();
     let studies: Vec<Study> = arguments.studies(session)?.into_iter().map(|study| study.stopped_by(&stop)).collect();
     let provenance = arguments.provenance(session)?;
     // Refused before the long work, not after it.
@@ -117,7 +117,7 @@ impl Arguments {
     /// One study for each dataset or model.
     fn studies(&self, session: &Session) -> anyhow::Result<Vec<Study>> {
         let of = |place: &Path, model: Option<&Path>, name: &str| {
-            let data = self.topics.load(place)?;
+            let data = self.topics.load_to_test(place, session)?;
             for warning in data.warnings.iter().filter(|_| !session.json()) {
                 session.message("warning", warning);
             }

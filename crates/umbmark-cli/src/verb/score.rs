@@ -43,7 +43,7 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = arguments.data.load()?;
+    let data = arguments.data.load(session)?;
     let mut score = score_dataset(&data, arguments.intervals.level)?;
     let noticed = score.setup.notices().len();
     score.warnings.splice(noticed..noticed, data.warnings.iter().cloned());

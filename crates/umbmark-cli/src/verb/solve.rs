@@ -38,7 +38,7 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = arguments.data.load()?;
+    let data = arguments.data.load_to_test(session)?;
     let options = arguments.test.options(session);
     let start = Model::new(data.nominal_robot()?);
     let solution = session.watched("% of the steps at most", |watch| solve(&data, &start, &options, watch))??;

@@ -43,7 +43,7 @@ pub struct Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let mut state = arguments.state.as_deref().map(WatchState::open).transpose()?;
-    let data = arguments.data.load()?;
+    let data = arguments.data.load(session)?;
     let known = state.as_ref().and_then(WatchState::record).cloned();
     let mut record = Record::resumed(known, &data, arguments.false_alarms, arguments.runs_per_month)?;
     let arrived = record.add(&data)?;

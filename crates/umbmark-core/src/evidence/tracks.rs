@@ -2,6 +2,7 @@
 
 mod alone;
 mod errors;
+mod packed;
 mod silent;
 mod system;
 
@@ -15,6 +16,7 @@ use std::sync::Arc;
 
 pub(crate) use alone::{Alone, trusted};
 pub(crate) use errors::{Errors, LEAST_GAIN, Misses};
+pub(crate) use packed::Packed;
 pub(crate) use silent::{last_part, silent, without, without_silent_taken};
 pub(crate) use system::{Projected, System, Unit};
 

@@ -23,6 +23,7 @@ use crate::setup::{RunSetup, Setup};
 pub use drifts::Gyro;
 pub use starts::Stretch;
 
+pub(crate) use blocks::BLOCK;
 use blocks::blocks;
 use rayon::prelude::*;
 use std::sync::Arc;

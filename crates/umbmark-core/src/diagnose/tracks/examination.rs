@@ -126,6 +126,8 @@ impl Examination {
         let few = self.some_columns(&out);
         let chain = self.fitted.model.chain();
         self.fitted.noise = Noise::estimate(&self.fitted.observed, &chain, &few, &self.fitted.noise);
+        // Never two systems at once: they are most of what is kept.
+        self.system.units = Vec::new();
         self.system = System::new(&self.fitted.observed, &self.fitted.noise, &self.columns);
     }
 

@@ -5,9 +5,10 @@ use super::finding::{Finding, worth};
 use super::flips::{Family, Scores};
 use super::responses::Question;
 use crate::diagnose::options::Options;
-use crate::evidence::tracks::{Projected, Unit};
+use crate::evidence::tracks::{Packed, Projected, System, Unit};
 use crate::stats::f_upper_tail;
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
@@ -63,7 +64,9 @@ fn look(exam: &Examination, smooths: bool, options: &Options) -> Vec<Finding> {
 fn certify(exam: &Examination, findings: &mut [Finding], options: &Options) {
     let few = exam.fitted.observed.runs.len() < ENOUGH_RUNS;
     let units = &exam.system.units;
-    let of = |finding: &Finding, by_quarter| scores(units, &finding.projected, &finding.answer.columns, by_quarter);
+    let own = |unit| Cow::Borrowed(of_unit(unit));
+    let of =
+        |finding: &Finding, by_quarter| scores((units, own), &finding.projected, &finding.answer.columns, by_quarter);
     let all = |by_quarter: bool| findings.par_iter().map(|finding| of(finding, by_quarter)).collect::<Vec<_>>();
     let by_run = all(few);
     let by_quarter = if by_run.iter().all(|own| own.carrying() >= ENOUGH_CARRYING) { Vec::new() } else { all(true) };
@@ -96,33 +99,47 @@ pub fn possible(exam: &Examination, finding: &Finding) -> bool {
 pub fn p_of_own(exam: &Examination, effect: &str, options: &Options) -> Option<f64> {
     let own = exam.columns_of(effect);
     let values: Vec<f64> = own.iter().map(|column| exam.departure(*column)).collect();
-    let without = exam.system.with_added(&own, &values);
+    let system = &exam.system;
+    let without = System::with_added(&system.whole, &own, &values);
+    let of_unit = |unit: &Unit| Cow::Owned(Packed::of(&System::with_added(&unit.white.whole(), &own, &values)));
     let base: Vec<usize> = exam.base(None).into_iter().filter(|column| !own.contains(column)).collect();
-    let projected = Projected::new(&without.whole, &base);
-    let shown: Vec<usize> = own.into_iter().filter(|column| !projected.absorbed(&without.whole, *column)).collect();
+    let projected = Projected::new(&without, &base);
+    let shown: Vec<usize> = own.iter().copied().filter(|column| !projected.absorbed(&without, *column)).collect();
     if shown.is_empty() {
         return None;
     }
     let (drop, step, _) = projected.drop(&shown)?;
-    let residual = without.residual();
+    let residual = system.residual();
     let q = shown.len() as f64;
-    let spare = without.rows as f64 - base.len() as f64 - q;
+    let spare = system.rows as f64 - base.len() as f64 - q;
     let f = drop / q / ((projected.products[(residual, residual)] - drop) / spare);
-    let by_run = scores(&without.units, &projected, &shown, exam.fitted.observed.runs.len() < ENOUGH_RUNS);
+    let of = |by_quarter| scores((&system.units, of_unit), &projected, &shown, by_quarter);
+    let by_run = of(exam.fitted.observed.runs.len() < ENOUGH_RUNS);
     let is_by_few = by_run.carrying() < ENOUGH_CARRYING;
-    let scores = if is_by_few { scores(&without.units, &projected, &shown, true) } else { by_run };
+    let scores = if is_by_few { of(true) } else { by_run };
     let flips = Family::new(std::slice::from_ref(&scores), options.seed).p(&scores);
     Some(f_upper_tail(f.max(0.0), [q, spare]).max(scores.p_by_units(&step)).max(flips))
 }
 
-/// Scores of a group of columns by run or by quarter of a run.
-fn scores(units: &[Unit], projected: &Projected, columns: &[usize], by_quarter: bool) -> Scores {
+/// The products of a unit.
+fn of_unit(unit: &Unit) -> &Packed {
+    &unit.white
+}
+
+/// Scores of a group of columns by run or by quarter of a run: of some units, with the products that they have.
+fn scores<'a>(
+    (units, products): (&'a [Unit], impl Fn(&'a Unit) -> Cow<'a, Packed>),
+    projected: &Projected,
+    columns: &[usize],
+    by_quarter: bool,
+) -> Scores {
     let information = projected.information(columns);
     let mut scores = Scores { units: Vec::new(), held: Vec::new(), parts: Vec::new(), information };
     let mut before = None;
     for unit in units {
-        let (score, held) = projected.score(&unit.white, columns);
-        let part = projected.information_of(&unit.white, columns);
+        let white = products(unit);
+        let (score, held) = projected.score(&white, columns);
+        let part = projected.information_of(&white, columns);
         match (scores.units.last_mut(), scores.held.last_mut(), scores.parts.last_mut()) {
             (Some(units), Some(all), Some(parts)) if !by_quarter && before == Some(unit.run) => {
                 *units += score;
@@ -155,7 +172,8 @@ mod tests {
         let exam = complete();
         let runs = exam.fitted.observed.runs.len();
         for finding in &effects(exam, &Options::default()) {
-            let of = |by_quarter| scores(&exam.system.units, &finding.projected, &finding.answer.columns, by_quarter);
+            let units = (&exam.system.units[..], |unit| Cow::Borrowed(of_unit(unit)));
+            let of = |by_quarter| scores(units, &finding.projected, &finding.answer.columns, by_quarter);
             let (by_run, by_quarter) = (of(false), of(true));
             assert_eq!((by_run.units.len(), by_quarter.units.len()), (runs, 4 * runs));
             for (run, (score, part)) in by_run.units.iter().zip(&by_run.parts).enumerate() {

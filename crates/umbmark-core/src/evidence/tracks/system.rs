@@ -1,6 +1,7 @@
 //! The linear system of a model: its residuals, and their derivatives by its parameters and by the effects that it may be missing. Only
 //! products of whitened columns are kept, summed run by run; every test and every fold of a cross-validation follows from them.
 
+use super::packed::Packed;
 use crate::likelihood::{
     ABSORBED, Column, Noise, Observed, ObservedRun, ScaledCholesky, gram, scaled_cholesky, solver,
 };
@@ -16,7 +17,7 @@ pub struct Unit {
     /// The fold that is left out with it: its run, or this part alone if there are few runs.
     pub fold: usize,
     /// Products of whitened columns.
-    pub white: DMatrix<f64>,
+    pub white: Packed,
     /// Number of whitened rows.
     pub rows: usize,
 }
@@ -59,7 +60,7 @@ impl System {
             let unit = |quarter: &[usize]| {
                 let values;
                 (values, rest) = rest.split_at(quarter.len() * width);
-                Unit { run: index, fold: index, rows: quarter.len(), white: gram(values, width) }
+                Unit { run: index, fold: index, rows: quarter.len(), white: Packed::of(&gram(values, width)) }
             };
             quarters.map(unit).collect::<Vec<_>>()
         });
@@ -72,23 +73,18 @@ impl System {
         System { rows: units.iter().map(|unit| unit.rows).sum(), units, width, whole }
     }
 
-    /// The same columns, with multiples of some of them added to the residual.
-    pub fn with_added(&self, columns: &[usize], times: &[f64]) -> System {
-        let residual = self.residual();
-        let added = |products: &DMatrix<f64>| {
-            let mut products = products.clone();
-            for (column, times) in columns.iter().zip(times) {
-                let own = products.column(*column) * *times;
-                products.column_mut(residual).add_assign(&own);
-            }
-            for (column, times) in columns.iter().zip(times) {
-                let own = products.row(*column) * *times;
-                products.row_mut(residual).add_assign(&own);
-            }
-            products
-        };
-        let units = self.units.iter().map(|unit| Unit { white: added(&unit.white), ..unit.clone() }).collect();
-        System { units, whole: added(&self.whole), ..*self }
+    /// Products of the same columns, with multiples of some of them added to the residual.
+    pub fn with_added(products: &DMatrix<f64>, columns: &[usize], times: &[f64]) -> DMatrix<f64> {
+        let (mut products, residual) = (products.clone(), products.ncols() - 1);
+        for (column, times) in columns.iter().zip(times) {
+            let own = products.column(*column) * *times;
+            products.column_mut(residual).add_assign(&own);
+        }
+        for (column, times) in columns.iter().zip(times) {
+            let own = products.row(*column) * *times;
+            products.row_mut(residual).add_assign(&own);
+        }
+        products
     }
 
     /// The residual's column.
@@ -179,7 +175,7 @@ impl Projected {
     }
 
     /// Score of a unit for a group of columns, and the projection of the group's columns on the orthonormalised base columns in that unit.
-    pub fn score(&self, unit: &DMatrix<f64>, group: &[usize]) -> (DVector<f64>, DMatrix<f64>) {
+    pub fn score(&self, unit: &Packed, group: &[usize]) -> (DVector<f64>, DMatrix<f64>) {
         let residual = self.products.ncols() - 1;
         let between =
             |from: &[usize], to: &[usize]| DMatrix::from_fn(from.len(), to.len(), |i, j| unit[(from[i], to[j])]);
@@ -192,7 +188,7 @@ impl Projected {
     }
 
     /// Contribution of a unit to the products of a group's columns, with the base projected out.
-    pub fn information_of(&self, unit: &DMatrix<f64>, group: &[usize]) -> DMatrix<f64> {
+    pub fn information_of(&self, unit: &Packed, group: &[usize]) -> DMatrix<f64> {
         let between =
             |from: &[usize], to: &[usize]| DMatrix::from_fn(from.len(), to.len(), |i, j| unit[(from[i], to[j])]);
         let taken = DMatrix::from_fn(self.base.len(), group.len(), |i, k| self.coefficients[(i, group[k])]);
@@ -221,10 +217,14 @@ mod tests {
     fn system() -> (Vec<DMatrix<f64>>, System) {
         let mut stream = Stream::new(5, 0, 0);
         let rows: Vec<_> = (0..4).map(|_| DMatrix::from_fn(10, 7, |_, k| (1.0 + k as f64) * stream.normal())).collect();
-        let unit =
-            |(rows, run): (&DMatrix<f64>, usize)| Unit { run, fold: run, white: rows.tr_mul(rows), rows: rows.nrows() };
+        let unit = |(rows, run): (&DMatrix<f64>, usize)| Unit {
+            run,
+            fold: run,
+            white: Packed::of(&rows.tr_mul(rows)),
+            rows: rows.nrows(),
+        };
         let units: Vec<Unit> = rows.iter().zip([0, 1, 1, 2]).map(unit).collect();
-        let whole = units.iter().map(|unit| unit.white.clone()).sum();
+        let whole = units.iter().map(|unit| unit.white.whole()).sum();
         (rows, System { rows: 40, units, width: 7, whole })
     }
 

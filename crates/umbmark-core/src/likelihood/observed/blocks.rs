@@ -8,7 +8,7 @@ use crate::replay::Track;
 
 /// Poses measured within this way \[m\] and rotation \[rad\] are one observation: they share the noise of the wheels, and only
 /// that of the reference is averaged.
-const BLOCK: (f64, f64) = (0.03, 0.05);
+pub(crate) const BLOCK: (f64, f64) = (0.03, 0.05);
 /// Number of units of a run, by the distance driven.
 const UNITS: f64 = 4.0;
 

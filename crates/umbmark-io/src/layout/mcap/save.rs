@@ -7,6 +7,7 @@ use crate::RobotFile;
 use crate::error::DatasetError;
 use crate::remedy::Remedy;
 use crate::save::{Existing, unwritable};
+use crate::unfinished::Unfinished;
 use crate::whole_file::{Place, WholeFile};
 use std::io::{Cursor, Write};
 use std::path::Path;
@@ -78,7 +79,8 @@ fn save_log(
     builder.prefix(".umbmark-").suffix(".mcap");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut beside = builder.tempfile_in(folder).map_err(|error| unwritable(file, &error))?;
+    let beside = Unfinished::begin(|| builder.tempfile_in(folder), |beside| beside.path());
+    let (mut beside, _unfinished) = beside.map_err(|error| unwritable(file, &error))?;
     let bytes = bytes(data, run, log)?;
     beside.write_all(&bytes).and_then(|()| beside.as_file().sync_all()).map_err(|error| unwritable(file, &error))?;
     let robot = data.robot.as_ref();

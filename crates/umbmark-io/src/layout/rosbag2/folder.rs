@@ -4,6 +4,7 @@ use super::super::messages::{self, Channel, Container, Contents, LONGEST, LogPro
 use super::METADATA;
 use crate::error::quoted;
 use crate::probe::names_in;
+use crate::unfinished::Unfinished;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -55,7 +56,7 @@ struct Part {
     /// Number of the whole for each channel of the file.
     numbers: BTreeMap<u16, u16>,
     /// Holds the unpacked file, where it was packed.
-    _unpacked: Option<NamedTempFile>,
+    _unpacked: Option<(NamedTempFile, Unfinished)>,
 }
 
 pub(super) fn open(folder: &Path) -> Opened {
@@ -101,13 +102,13 @@ fn part(folder: &Path, path: &Path) -> Result<Part, Stop> {
         file.ok_or_else(|| Stop::damage(None, format!("{METADATA} lists {}, which is not there", quoted(&name))))?;
     let unpacked = file.extension().is_some_and(|ending| ending == "zstd" || ending == "zst");
     let unpacked = unpacked.then(|| unpack(&file)).transpose()?;
-    let (_, container) = messages::open(unpacked.as_ref().map_or(&file, |unpacked| unpacked.path()))?;
+    let (_, container) = messages::open(unpacked.as_ref().map_or(&file, |(unpacked, _)| unpacked.path()))?;
     Ok(Part { name, container, numbers: BTreeMap::new(), _unpacked: unpacked })
 }
 
 /// A packed file beside it, unpacked; it goes away with what holds it.
-fn unpack(file: &Path) -> Result<NamedTempFile, Stop> {
-    let mut unpacked = NamedTempFile::new()?;
+fn unpack(file: &Path) -> Result<(NamedTempFile, Unfinished), Stop> {
+    let (mut unpacked, unfinished) = Unfinished::begin(NamedTempFile::new, |file| file.path())?;
     let broken = |_| Stop::damage(None, format!("{} cannot be unpacked", quoted(&file.display().to_string())));
     let source = File::open(file)?;
     let most = FREE.saturating_add(MOST_PACKED.saturating_mul(source.metadata()?.len()));
@@ -116,7 +117,7 @@ fn unpack(file: &Path) -> Result<NamedTempFile, Stop> {
         let name = quoted(&file.display().to_string());
         return Err(Stop::damage(None, format!("{name} unpacks to more than {MOST_PACKED} times its size")));
     }
-    Ok(unpacked)
+    Ok((unpacked, unfinished))
 }
 
 impl Container for Folder {
