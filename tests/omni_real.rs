@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use umbmark_core::dataset::Dataset;
+use umbmark_core::dataset::{Dataset, TickLog};
 use umbmark_core::drive::{Drive, MecanumDrive, Omni3Drive, Robot};
 use umbmark_core::effect::Model;
 use umbmark_core::geometry::wrap;
@@ -37,8 +37,9 @@ fn published(folder: &Path, name: &str) -> Vec<Published> {
     let mut rows = Vec::new();
     for line in text.lines().skip(2) {
         let (first, rest) = line.split_once(',').unwrap();
-        if !first.is_empty() {
-            set = first.rsplit_once('/').unwrap().0.to_owned();
+        // A sheet may end in a heading that goes over two lines.
+        if let Some((path, _)) = first.rsplit_once('/') {
+            path.clone_into(&mut set);
         }
         rows.push((set.clone(), rest.split(',').map(|cell| cell.parse().ok()).collect()));
     }
@@ -235,30 +236,66 @@ fn bases(folder: &Path, kind: &str) -> Vec<(String, Vec<f64>, [f64; 2])> {
         for (set, row) in
             published(folder, &format!("{kind}-{method}")).into_iter().filter(|(set, _)| set.starts_with(kind))
         {
-            // The largest errors along the way stand before those at the end.
+            // The largest errors along the way stand before those at the end; a sheet may end in a row without numbers.
             for first in [0, all + 4] {
-                let numbers: Option<Vec<f64>> = columns.iter().map(|column| row[first + column]).collect();
-                let errors = [row[first + all + 2], row[first + all + 3]].map(Option::unwrap);
-                found.extend(numbers.map(|numbers| (set.clone(), numbers, errors)));
+                let cell = |column: usize| row.get(column).copied().flatten();
+                let numbers: Option<Vec<f64>> = columns.iter().map(|column| cell(first + column)).collect();
+                let errors = cell(first + all + 2).zip(cell(first + all + 3));
+                found.extend(numbers.zip(errors).map(|(numbers, (far, turned))| (set.clone(), numbers, [far, turned])));
             }
         }
     }
     found
 }
 
+/// The largest final error of a position \[m\] where each step is made along the heading at its end, and not as an arc.
+fn worst_end_by_steps(data: &Dataset, drive: Drive) -> f64 {
+    let data = driven_by(data, drive);
+    let (rollers, encoder) = (drive.rollers().unwrap(), data.robot.as_ref().unwrap().encoder);
+    let per_count = rollers.metres_per_count(encoder.ticks_per_revolution());
+    let far = |log: &TickLog| {
+        let (mut x, mut y, mut heading, mut before) = (0.0, 0.0, 0.0_f64, vec![0.0; per_count.len()]);
+        for sample in 0..log.time.len() {
+            let ways: Vec<f64> = log
+                .rollers
+                .iter()
+                .zip(&before)
+                .zip(&per_count)
+                .map(|((counts, before), per)| (counts[sample] - before) * per)
+                .collect();
+            before = log.rollers.iter().map(|counts| counts[sample]).collect();
+            let motion = rollers.motion(&ways);
+            heading += motion.rotation;
+            x += motion.forward * heading.cos() - motion.sideways * heading.sin();
+            y += motion.forward * heading.sin() + motion.sideways * heading.cos();
+        }
+        let seen = log.reference.last().unwrap();
+        (seen.x - x).hypot(seen.y - y)
+    };
+    data.runs.iter().filter_map(|run| run.log.as_ref()).map(far).fold(0.0, f64::max)
+}
+
 /// Start values of both methods and the results of the one that publishes them: each replay ends as far off as its authors say.
+///
+/// Of three omni wheels they make each step along the heading at its end. By exact arcs the same counts end up to 13 mm elsewhere, with the
+/// same headings.
 #[test]
 fn bases_on_rollers_replayed_with_published_values_end_where_their_authors_say() {
     let Some(folder) = folder() else { return };
+    let mut apart = 0.0_f64;
     for kind in ["omni4", "omni3"] {
         let rows = bases(&folder, kind);
         assert_eq!(rows.len(), 15, "{kind}");
         for (set, numbers, [far, turned]) in rows {
-            let [found, off] = worst_ends_by(&load(&folder, &set), base(kind, &numbers));
+            let data = load(&folder, &set);
+            let [by_arcs, off] = worst_ends_by(&data, base(kind, &numbers));
+            let found = if kind == "omni3" { worst_end_by_steps(&data, base(kind, &numbers)) } else { by_arcs };
             assert!((found - far).abs() < 1e-3, "{set} {numbers:?}: {found} m, published {far}");
             assert!((off.to_degrees() - turned).abs() < 0.1, "{set} {numbers:?}: {off} rad, published {turned} deg");
+            apart = apart.max((by_arcs - far).abs());
         }
     }
+    assert!((0.010..0.014).contains(&apart), "{apart}");
 }
 
 /// By the measure that the authors minimise, the same numbers of the same base end nearer in every set: a search with shrinking steps along

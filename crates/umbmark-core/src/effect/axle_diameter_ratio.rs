@@ -15,7 +15,7 @@ pub(super) static EFFECT: Entry = Entry::of::<AxleDiameterRatio>().body::<AxleDi
 impl Effect for AxleDiameterRatio {
     const ABOUT: About = About {
         name: "axle_diameter_ratio",
-        title: "diameters of the front wheels over those of the rear ones, mecanum",
+        title: "front over rear wheel diameters, mecanum",
         acts_on: ActsOn::Body,
         parameters: &[Parameter::ratio(
             "ratio",

@@ -15,7 +15,7 @@ pub(super) static EFFECT: Entry = Entry::of::<DiagonalDiameterRatio>().body::<Di
 impl Effect for DiagonalDiameterRatio {
     const ABOUT: About = About {
         name: "diagonal_diameter_ratio",
-        title: "diameters on one diagonal over those on the other, mecanum",
+        title: "wheel diameters of both diagonals, mecanum",
         acts_on: ActsOn::Body,
         parameters: &[Parameter::ratio(
             "ratio",

@@ -19,7 +19,7 @@ const THIRD_ROOT: f64 = FRAC_1_SQRT_2 * 0.816_496_580_927_726;
 impl Effect for FrontDiameterRatio {
     const ABOUT: About = About {
         name: "front_diameter_ratio",
-        title: "diameter of the front left omni wheel over that of the front right one",
+        title: "left over right front wheel, omni wheels",
         acts_on: ActsOn::Body,
         parameters: &[Parameter::ratio(
             "ratio",

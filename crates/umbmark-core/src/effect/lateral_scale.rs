@@ -14,7 +14,7 @@ pub(super) static EFFECT: Entry = Entry::of::<LateralScale>().body::<LateralScal
 impl Effect for LateralScale {
     const ABOUT: About = About {
         name: "lateral_scale",
-        title: "scale of ways to the side, wheels with rollers",
+        title: "scale of ways to the side",
         acts_on: ActsOn::Body,
         parameters: &[Parameter::ratio("ratio", "lateral-scale", 2e-2, (0.2, 5.0), "true / believed way to the side")],
         equation: "left ← k · left",

@@ -14,7 +14,7 @@ pub(super) static EFFECT: Entry = Entry::of::<LostCycles>().body::<LostCycles>()
 impl Effect for LostCycles {
     const ABOUT: About = About {
         name: "lost_cycles",
-        title: "ways of cycles that the log lost",
+        title: "cycles that the log lost",
         acts_on: ActsOn::Odometry,
         parameters: &[Parameter::size(
             "share",

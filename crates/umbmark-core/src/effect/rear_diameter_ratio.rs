@@ -15,7 +15,7 @@ pub(super) static EFFECT: Entry = Entry::of::<RearDiameterRatio>().body::<RearDi
 impl Effect for RearDiameterRatio {
     const ABOUT: About = About {
         name: "rear_diameter_ratio",
-        title: "diameter of the rear omni wheel over that of the front ones",
+        title: "rear over front wheel, omni wheels",
         acts_on: ActsOn::Body,
         parameters: &[Parameter::ratio(
             "ratio",

@@ -14,7 +14,7 @@ pub(super) static EFFECT: Entry = Entry::of::<RollerScale>().body::<RollerScale>
 impl Effect for RollerScale {
     const ABOUT: About = About {
         name: "roller_scale",
-        title: "scale of a base on wheels with rollers",
+        title: "scale of wheels with rollers",
         acts_on: ActsOn::Body,
         parameters: &[Parameter::ratio("e_s", "roller-scale", 4e-3, (0.2, 5.0), "mean true / nominal wheel diameter")],
         equation: "(ahead, left, Δθ) ← E_s (ahead, left, Δθ)",

@@ -15,7 +15,7 @@ pub(super) static EFFECT: Entry = Entry::of::<SideDiameterRatio>().body::<SideDi
 impl Effect for SideDiameterRatio {
     const ABOUT: About = About {
         name: "side_diameter_ratio",
-        title: "diameters of the right wheels over those of the left ones, mecanum",
+        title: "right over left wheel diameters, mecanum",
         acts_on: ActsOn::Body,
         parameters: &[Parameter::ratio(
             "ratio",
