@@ -257,7 +257,7 @@ impl Recording {
         let (key, value) = ("drive".into(), format!("\"{}\"", kind.name()));
         let columns: Vec<String> = kind.columns().iter().map(|counter| format!("ticks_{counter}")).collect();
         let remedy = format!("of this drive, only CSV with a counter for each wheel is read ({})", columns.join(", "));
-        At::new(self.file.clone(), 1).refuse(LineProblem::NotYet { key, value, remedy: remedy.into() })
+        At::new(self.file.clone(), 1).refuse(LineProblem::NotYet { key, value, remedy })
     }
 
     fn fractional(&self, wheel: usize, at: usize, reading: f64) -> DatasetError {
