@@ -12,6 +12,7 @@ mod monte_carlo;
 mod omni_real;
 mod paper;
 mod references;
+mod rollers;
 mod rooms;
 mod steered;
 mod tracks;

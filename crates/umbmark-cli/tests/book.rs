@@ -75,7 +75,7 @@ fn the_page_of_the_drives_has_every_kind_and_its_keys() {
             let left_out = if p.nothing().is_some() { "0" } else { "refused" };
             text += &format!("| `{}` | {} | {left_out} | {} |\n", p.name, p.allowed(), p.meaning);
         }
-        let counters = kind.counters().map(|counter| format!("`ticks_{counter}`"));
+        let counters = kind.columns().into_iter().map(|counter| format!("`ticks_{counter}`"));
         let columns = if kind.has_tick_logs() { listed(counters) } else { "none, only return poses".to_owned() };
         let paths = SHAPES.iter().filter(|shape| shape.usual().suits(&robot(drive))).map(|shape| shape.name);
         text += &format!("\n- **Columns of its logs**: {columns}\n");

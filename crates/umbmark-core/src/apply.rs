@@ -112,10 +112,12 @@ fn along(track: &Track, log: &TickLog, model: &Model, noise: Option<&Noise>, sta
             let from = pose;
             let motion = chain.displacement(&at.at_pose(&from), travel);
             pose.advance(&motion);
-            way += motion.forward.abs();
+            way +=
+                if at.aside.way == 0.0 { motion.forward.abs() } else { libm::hypot(motion.forward, motion.sideways) };
             if let Some(growth) = &growth {
-                spread = spread.after(&from, &motion, travel.rolled(), &pose, growth);
-                let grown = growth.of(&motion, travel.rolled());
+                let rolled = travel.rolled().max(at.aside.way.abs());
+                spread = spread.after(&from, &motion, rolled, &pose, growth);
+                let grown = growth.of(&motion, rolled);
                 step = std::array::from_fn(|k| step[k] + grown[k]);
             }
         }

@@ -23,9 +23,12 @@ pub use tracks::{TrackComparison, compare_tracks};
 pub fn usual_models(data: &Dataset, options: &Options) -> Result<Vec<(String, Model)>, FitError> {
     let (robot, level) = (robot_of(data)?, options.level(data));
     let mut models = vec![("nominal robot".to_owned(), Model::new(robot))];
+    let of_paper = robot.drive.kind().has_axle_wheels();
     let (name, first) = match level {
-        Level::Ends => ("E_d and E_b, fitted to these runs", base_model(robot)?),
-        Level::Tracks => ("E_d, E_b, E_s fitted", first_model(data)?),
+        Level::Ends if of_paper => ("E_d and E_b, fitted to these runs", base_model(robot)?),
+        Level::Ends => ("its first two effects, fitted to these runs", base_model(robot)?),
+        Level::Tracks if of_paper => ("E_d, E_b, E_s fitted", first_model(data)?),
+        Level::Tracks => ("its first three effects fitted", first_model(data)?),
     };
     match AnyEvidence::of(data, level)?.fit(&first) {
         Ok(fitted) => models.push((name.to_owned(), fitted.model)),

@@ -13,6 +13,8 @@ macro_rules! every_drive {
             Clapper(clapper::ClapperDrive),
             Ackermann(ackermann::AckermannDrive),
             Tricycle(tricycle::TricycleDrive),
+            Mecanum(mecanum::MecanumDrive),
+            Omni3(omni3::Omni3Drive),
         }
     };
 }
@@ -20,12 +22,14 @@ macro_rules! every_drive {
 mod encoder;
 mod kind;
 mod kinematics;
+mod rollers;
 
 pub use clapper::LinkReading;
 pub use differential::WheelTravel;
 pub use encoder::{Encoder, MAX_COUNTER_BITS, Wiring, roll_over};
 pub use kind::{DriveKind, DriveKinds};
 pub use kinematics::Spelling;
+pub use rollers::{MOST_WHEELS, RollerWheel, Rollers};
 
 use crate::parameter::{Parameter, ParameterError, Sizes};
 use kinematics::Kinematics;
@@ -148,6 +152,13 @@ macro_rules! drives {
             pub fn trucks(&self) -> Option<&ClapperDrive> {
                 match self {
                     $(Drive::$kind(drive) => drive.trucks(),)+
+                }
+            }
+
+            /// Its wheels with rollers, where it has them: it then also moves sideways.
+            pub fn rollers(&self) -> Option<Rollers> {
+                match self {
+                    $(Drive::$kind(drive) => drive.rollers(),)+
                 }
             }
 
@@ -357,6 +368,43 @@ impl Robot {
             .map(f64::round);
             counters[0].push(now[0]);
             counters[1].push(now[1]);
+        }
+        counters
+    }
+
+    /// Ticks of the axle's wheels since START for readings of wheels with rollers, one column a wheel; `None` for a drive without such.
+    pub fn axle_ticks_of_rollers(&self, counters: &[Vec<f64>]) -> Option<[Vec<f64>; 2]> {
+        let rollers = self.drive.rollers()?;
+        let (per_tick, per_count) =
+            (self.metres_per_tick(), rollers.metres_per_count(self.encoder.ticks_per_revolution()));
+        let samples = counters.iter().map(Vec::len).min().unwrap_or(0);
+        let mut ticks = [Vec::with_capacity(samples), Vec::with_capacity(samples)];
+        for sample in 0..samples {
+            let ways: Vec<f64> =
+                counters.iter().zip(&per_count).map(|(counts, per_count)| counts[sample] * per_count).collect();
+            let motion = rollers.motion(&ways);
+            let travel = self.drive.wheel_travel(motion.forward, motion.rotation);
+            ticks[0].push(travel.left / per_tick.left);
+            ticks[1].push(travel.right / per_tick.right);
+        }
+        Some(ticks)
+    }
+
+    /// Readings of wheels with rollers from which [`Robot::axle_ticks_of_rollers`] makes these ticks of the axle's wheels, where the robot does
+    /// not move sideways; none for a drive without such.
+    pub fn counters_of_rollers(&self, ticks: [&[f64]; 2]) -> Vec<Vec<f64>> {
+        let Some(rollers) = self.drive.rollers() else { return Vec::new() };
+        let (per_tick, per_count) =
+            (self.metres_per_tick(), rollers.metres_per_count(self.encoder.ticks_per_revolution()));
+        let mut counters = vec![Vec::with_capacity(ticks[0].len()); per_count.len()];
+        for (left, right) in ticks[0].iter().zip(ticks[1]) {
+            let travel = WheelTravel { left: left * per_tick.left, right: right * per_tick.right };
+            let ways = rollers.ways_of(&self.drive.displacement(&travel));
+            counters
+                .iter_mut()
+                .zip(ways)
+                .zip(&per_count)
+                .for_each(|((counts, way), per_count)| counts.push((way / per_count).round()));
         }
         counters
     }

@@ -24,6 +24,7 @@ mod laws;
 mod model;
 mod name;
 mod number;
+mod rollers;
 mod text;
 mod words;
 
@@ -35,7 +36,7 @@ use crate::register;
 pub use bumps::extra_travel;
 pub use chain::Chain;
 pub use changes::Changes;
-pub use context::{Context, Progress, RunContext, Sight};
+pub use context::{Aside, Context, Progress, RunContext, Sight};
 pub(crate) use conversion::differences;
 pub use conversion::{CONVERTED, Conversion};
 pub use entry::{Entry, Evaluate, MeanLaws, RandomLaws};
@@ -59,6 +60,7 @@ register! {
     encoder_skew,
     encoder_sampling,
     encoder_resolution,
+    lost_cycles,
     // The wheels' shape, and their play.
     wheel_diameter_ratio,
     wheelbase,
@@ -80,6 +82,14 @@ register! {
     steering_zero,
     steering_gain,
     understeer,
+    // Wheels with rollers.
+    side_diameter_ratio,
+    diagonal_diameter_ratio,
+    axle_diameter_ratio,
+    front_diameter_ratio,
+    rear_diameter_ratio,
+    roller_scale,
+    lateral_scale,
     // Two trucks, and the link between them.
     rear_truck,
     link_length,
@@ -304,4 +314,4 @@ fn at_work(sizes: &[f64]) -> bool {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -1,5 +1,6 @@
 //! One drive of a robot: its wheel counts, the absolute poses measured on the way, and its return error.
 
+mod aside;
 pub mod dead_reckoning;
 mod gyro;
 mod place;
@@ -55,6 +56,9 @@ pub struct TickLog {
     pub left: Vec<f64>,
     /// Right wheel angle \[ticks\], cumulative from START, roll-overs undone.
     pub right: Vec<f64>,
+    /// Of wheels with rollers, the angle of each \[ticks\], cumulative from START: what the two above were made of. Empty of other drives.
+    #[serde(default)]
+    pub rollers: Vec<Vec<f64>>,
     /// Absolute poses in the order of their samples: many, few, or none.
     pub reference: Vec<ReferencePose>,
     /// Whether these poses tell only how the robot moved from each to the next: those of scan matching or of visual odometry, whose errors add
@@ -69,6 +73,9 @@ pub struct TickLog {
     /// The recorder's clock at time 0 \[ns\], where that is of a calendar; else 0.
     #[serde(default)]
     pub begin_ns: i64,
+    /// By which share the run took longer by the reference's clock than by that of the rows, where both wrote down when it began and ended; else 0.
+    #[serde(default)]
+    pub clock_excess: f64,
     /// Where START was found.
     #[serde(default)]
     pub start: Start,

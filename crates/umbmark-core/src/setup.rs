@@ -373,8 +373,8 @@ fn standing(seen: &[Seen]) -> Option<Fault> {
     let mut rolled = 0.0;
     let mut ways = Vec::new();
     for seen in seen.iter().filter(|seen| !seen.windows.is_empty()) {
-        let windows = seen.windows.iter().map(|window| seen.rolled.between(window.from, window.to).travel);
-        let most = windows.map(|[left, right]| left.abs().max(right.abs()));
+        let windows = seen.windows.iter().map(|window| seen.rolled.between(window.from, window.to));
+        let most = windows.map(|rolling| rolling.travel[0].abs().max(rolling.travel[1].abs()).max(rolling.aside.abs()));
         // Windows overlap by half.
         rolled += 0.5 * most.sum::<f64>();
         let first = &seen.log.reference[0];
@@ -433,11 +433,13 @@ fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting>
     let mut samples = seen.log.time.iter().copied().peekable();
     let mut drive_to = |time: f64| {
         let from: f64 = *now.get_or_insert(time);
-        let [l, r] = seen.rolled.between(from, time).travel;
+        let rolling = seen.rolled.between(from, time);
+        let [l, r] = rolling.travel;
         let (way, turn) = (0.5 * (l + r), (r - l) / wheelbase);
         let rotation = gain * turn + drift * way;
-        pose = pose.moved(&Displacement2 { forward: scale * way, sideways: 0.0, rotation });
-        rolled = [rolled[0] + way.abs(), rolled[1] + turn.abs()];
+        pose = pose.moved(&Displacement2 { forward: scale * way, sideways: scale * rolling.aside, rotation });
+        let gone = if rolling.aside == 0.0 { way.abs() } else { libm::hypot(way, rolling.aside) };
+        rolled = [rolled[0] + gone, rolled[1] + turn.abs()];
         now = Some(time);
         (pose, rolled)
     };

@@ -75,6 +75,7 @@ fn between(log: &TickLog, from: usize, to: usize) -> TickLog {
         time: log.time[from..=to].to_vec(),
         left: counts(&log.left),
         right: counts(&log.right),
+        rollers: log.rollers.iter().map(|all| counts(all)).collect(),
         mended: Mended::default(),
         ..TickLog::default()
     }

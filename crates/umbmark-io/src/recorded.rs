@@ -36,6 +36,7 @@ pub fn assemble(robot: Option<Robot>, path: Option<Path>, logs: Vec<Recorded>) -
     for Recorded { name, columns, time, counts, reference } in logs {
         let lines = (0..time.len()).collect();
         let file = name.clone();
+        let (columns, counts) = (columns.to_vec(), counts.to_vec());
         let recording = Recording { file, columns, lines, time, counts, reference, ..Recording::default() };
         assembly.add_recording(recording, None, &name, label::parse(&name), EndPose::Standing)?;
     }

@@ -5,7 +5,7 @@ mod order;
 use super::error::{At, DatasetError, LineProblem};
 use super::lines::Lines;
 use umbmark_core::dataset::{Mended, ReferencePose, TickLog};
-use umbmark_core::drive::{Robot, roll_over};
+use umbmark_core::drive::{DriveKind, Robot, roll_over};
 use umbmark_core::prose::counted;
 use umbmark_core::run::headings_of;
 
@@ -20,17 +20,17 @@ const BEFORE_RESET: f64 = 20.0;
 const SHORT: f64 = 5.0;
 
 /// The rows of one log, before anything is mended.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Recording {
     pub file: String,
-    /// Names of the time, left and right columns.
-    pub columns: [String; 3],
+    /// Names of the column of the times and of those of the counters.
+    pub columns: Vec<String>,
     /// Line of each row.
     pub lines: Lines,
     /// \[s\]
     pub time: Vec<f64>,
-    /// Readings of the left and the right counter.
-    pub counts: [Vec<f64>; 2],
+    /// Readings of the left and the right counter, or of each wheel with rollers.
+    pub counts: Vec<Vec<f64>>,
     /// Whether a reading is what was counted since the row before, rather than in all.
     pub per_cycle: bool,
     /// Whether the angle of a row is that of all that was driven since the row before, rather than that at its time.
@@ -42,8 +42,31 @@ pub(super) struct Recording {
     pub headings_only: bool,
     /// Whether their headings are the rates of a gyro, not yet added up.
     pub rates: bool,
+    /// By which share the run took longer by the reference's clock than by that of the rows.
+    pub clock_excess: f64,
     /// Rows at which the robot stood on a mark, and its name.
     pub marked: Vec<(usize, String)>,
+}
+
+impl Default for Recording {
+    /// Without rows, for two counters.
+    fn default() -> Recording {
+        Recording {
+            file: String::new(),
+            columns: vec![String::new(); 3],
+            lines: Lines::default(),
+            time: Vec::new(),
+            counts: vec![Vec::new(); 2],
+            per_cycle: false,
+            angle_of_row: false,
+            reference: Vec::new(),
+            relative: false,
+            headings_only: false,
+            rates: false,
+            clock_excess: 0.0,
+            marked: Vec::new(),
+        }
+    }
 }
 
 impl Recording {
@@ -55,15 +78,23 @@ impl Recording {
         bits: Option<u32>,
         warnings: &mut Vec<String>,
     ) -> Result<(TickLog, Vec<(usize, String)>), DatasetError> {
+        if let Some(kind) =
+            robot.map(|robot| robot.drive.kind()).filter(|kind| kind.columns().len() != self.counts.len())
+        {
+            return Err(self.other_counters(kind));
+        }
         let mut mended = Mended::default();
         order::put_in_order(&mut self, &mut mended, warnings)?;
         self.add_up_rates();
         if self.per_cycle {
             self.add_up();
         }
-        let mut reset_rows = Vec::new();
+        let (mut reset_rows, wheels) = (Vec::new(), self.counts.len());
         let mut unroll = |wheel| self.unroll(wheel, robot, bits, &mut mended.roll_overs, &mut reset_rows);
-        let ticks = [unroll(0)?, unroll(1)?];
+        let mut unrolled = Vec::new();
+        for wheel in 0..wheels {
+            unrolled.push(unroll(wheel)?);
+        }
         if let (Some(bits), 1..) = (bits, mended.roll_overs) {
             warnings.push(format!("{}: {} roll-overs of the {bits}-bit counters undone", self.file, mended.roll_overs));
         }
@@ -79,13 +110,23 @@ impl Recording {
                 counted(mended.resets, "counter reset")
             ));
         }
-        let [left, right] = match robot {
-            Some(robot) if self.angle_of_row => robot.axle_ticks_by_rows(robot.encoder.wiring().counters(ticks)),
-            Some(robot) => robot.axle_ticks(robot.encoder.wiring().counters(ticks)),
-            None => ticks,
+        let of_rollers = robot.and_then(|robot| robot.axle_ticks_of_rollers(&unrolled));
+        let ([left, right], rollers) = if let Some(ticks) = of_rollers {
+            (ticks, unrolled)
+        } else {
+            let mut two = unrolled.into_iter();
+            let ticks = [two.next().unwrap_or_default(), two.next().unwrap_or_default()];
+            let ticks = match robot {
+                Some(robot) if self.angle_of_row => robot.axle_ticks_by_rows(robot.encoder.wiring().counters(ticks)),
+                Some(robot) => robot.axle_ticks(robot.encoder.wiring().counters(ticks)),
+                None => ticks,
+            };
+            (ticks, Vec::new())
         };
         let (time, reference, relative, headings_only) = (self.time, self.reference, self.relative, self.headings_only);
-        let log = TickLog { time, left, right, reference, relative, headings_only, mended, ..TickLog::default() };
+        let clock_excess = self.clock_excess;
+        let counts = TickLog { left, right, rollers, clock_excess, mended, ..TickLog::default() };
+        let log = TickLog { time, reference, relative, headings_only, ..counts };
         Ok((log, self.marked))
     }
 
@@ -132,7 +173,8 @@ impl Recording {
             return Err(self.fractional(wheel, at, readings[at]));
         }
         // A steering counter has no speed over ground.
-        let robot = robot.filter(|robot| wheel == 0 || robot.drive.kind().has_axle_wheels());
+        let of_wheel = |robot: &&Robot| robot.drive.kind().has_axle_wheels() || robot.drive.kind().moves_sideways();
+        let robot = robot.filter(|robot| wheel == 0 || of_wheel(robot));
         let fastest = robot.map_or(f64::INFINITY, |robot| FASTEST / metres_per_tick(robot, wheel));
         let mut before = readings.first().copied().unwrap_or(0.0);
         let widths = widths_of(&readings);
@@ -208,6 +250,14 @@ impl Recording {
             }
         }
         cut(&mut largest)
+    }
+
+    /// The error of a log with other counters than the drive has.
+    fn other_counters(&self, kind: DriveKind) -> DatasetError {
+        let (key, value) = ("drive".into(), format!("\"{}\"", kind.name()));
+        let columns: Vec<String> = kind.columns().iter().map(|counter| format!("ticks_{counter}")).collect();
+        let remedy = format!("of this drive, only CSV with a counter for each wheel is read ({})", columns.join(", "));
+        At::new(self.file.clone(), 1).refuse(LineProblem::NotYet { key, value, remedy })
     }
 
     fn fractional(&self, wheel: usize, at: usize, reading: f64) -> DatasetError {
@@ -291,7 +341,7 @@ pub(super) fn time_error(
 
 fn metres_per_tick(robot: &Robot, wheel: usize) -> f64 {
     let per_tick = robot.metres_per_tick();
-    [per_tick.left, per_tick.right][wheel]
+    [per_tick.left, per_tick.right][wheel.min(1)]
 }
 
 #[cfg(test)]
@@ -323,7 +373,13 @@ mod tests {
         let time: Vec<f64> = (0..400).map(|row| 0.05 * f64::from(row)).collect();
         let columns = ["t_s", "ticks_left", "ticks_right"].map(str::to_owned);
         let counts = [counts.clone(), counts];
-        let recording = Recording { time, counts, columns, lines: (2..402).collect(), ..Recording::default() };
+        let recording = Recording {
+            time,
+            counts: counts.to_vec(),
+            columns: columns.to_vec(),
+            lines: (2..402).collect(),
+            ..Recording::default()
+        };
         assert!((recording.usual_rate(0) / 52_000.0 - 1.0).abs() < 1e-6);
         let refused = recording.into_log(None, None, &mut Vec::new()).map(|_| ()).unwrap_err().to_string();
         assert!(refused.contains("a counter of 16 bits"), "{refused}");
@@ -338,7 +394,7 @@ mod tests {
             let mut rates: Vec<f64> = counts.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
             rates.sort_by(f64::total_cmp);
             let expected = if rates.is_empty() { 0.0 } else { rates[(rates.len() - 1) * 99 / 100] };
-            let recording = Recording { time, counts: [counts, Vec::new()], ..Recording::default() };
+            let recording = Recording { time, counts: vec![counts, Vec::new()], ..Recording::default() };
             assert_eq!(recording.usual_rate(0), expected, "{rows}");
         }
     }

@@ -49,7 +49,10 @@ impl RobotFile {
 pub(super) fn read_robot_table(table: &Table) -> Result<Robot, DatasetError> {
     let kind = table.get("drive").map_or_else(|| Ok(DriveKind::default()), |drive| read_kind(&drive))?;
     let backward = kind.counters().map(|counter| format!("{counter}_counts_backward"));
-    let mut keys = vec!["name", "drive", EXCHANGED, &backward[0], &backward[1]];
+    let mut keys = vec!["name", "drive"];
+    if !kind.moves_sideways() {
+        keys.extend([EXCHANGED, &backward[0], &backward[1]]);
+    }
     keys.extend(kind.parameters().iter().map(|p| p.name));
     keys.extend(kind.spellings().iter().map(|spelling| spelling.parameter.name));
     keys.extend([Encoder::TICKS, Encoder::RATE, Encoder::BITS].map(|p| p.name));

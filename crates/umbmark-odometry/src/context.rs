@@ -31,6 +31,23 @@ pub struct Place {
 /// Time constants of the lags of [`Context::falls_behind`] \[s\], each twice the one before.
 pub const TIME_CONSTANTS: [f64; 6] = [0.02, 0.04, 0.08, 0.16, 0.32, 0.64];
 
+/// What wheels with rollers do in a piece beside the motion that the wheels of an axle would make too.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Aside {
+    /// Motion of the body to the left, as the odometry believes it \[m\].
+    pub way: f64,
+    /// How far the wheels disagree, where more of them are counted than a motion has parts: root mean square over the wheels of what no motion
+    /// explains, with a sign \[m\].
+    pub disagreement: f64,
+    /// Mean speed to the left \[m/s\].
+    pub speed: f64,
+}
+
+impl Aside {
+    /// Nothing.
+    pub const NONE: Aside = Aside { way: 0.0, disagreement: 0.0, speed: 0.0 };
+}
+
 /// One piece of a run, in the terms of the robot's own odometry.
 ///
 /// Cumulative quantities have their value at the beginning of the piece, rates their mean over it.
@@ -61,6 +78,8 @@ pub struct Context<T = f64> {
     pub wheel_rotation: [f64; 2],
     /// Travel of each wheel during the piece \[m\], as the odometry believes it.
     pub wheel_travel: [f64; 2],
+    /// Of a drive that also moves sideways, see [`Aside`]; else zero.
+    pub aside: Aside,
     /// How much further the left and the right wheel fall behind their counts during the piece \[m\], if they follow the counted speed as
     /// first-order lags with the [`TIME_CONSTANTS`]; 0 in a run that is not [recorded](Context::recorded).
     pub falls_behind: [[f64; TIME_CONSTANTS.len()]; 2],
@@ -91,6 +110,8 @@ pub struct Context<T = f64> {
     pub run: f64,
     /// Sense of the run: +1 counter-clockwise, -1 clockwise, 0 where it has none.
     pub direction: f64,
+    /// By which share the run took longer by the reference's clock than by the log's, where both wrote down when it began and ended; else 0.
+    pub clock_excess: f64,
     /// Whether the wheel travel was recorded by encoders; otherwise it is the commanded one.
     pub recorded: bool,
 }
@@ -112,6 +133,7 @@ impl Context {
             wheel_angle: self.wheel_angle,
             wheel_rotation: self.wheel_rotation,
             wheel_travel: self.wheel_travel,
+            aside: self.aside,
             falls_behind: self.falls_behind,
             reversed: self.reversed,
             distance: self.distance,
@@ -126,6 +148,7 @@ impl Context {
             axle_distance: self.axle_distance,
             run: self.run,
             direction: self.direction,
+            clock_excess: self.clock_excess,
             recorded: self.recorded,
         }
     }
@@ -143,12 +166,18 @@ impl<T> Context<T> {
     /// Whether the robot turns about a point within a wheelbase of its axle's centre: |v_R - v_L| > |v|.
     pub fn turns_on_the_spot(&self) -> bool {
         let [left, right] = self.wheel_speed;
-        (right - left).abs() > self.speed.abs()
+        (right - left).abs() > self.speed.abs().max(self.aside.speed.abs())
+    }
+
+    /// The same piece of which only a share is driven.
+    pub fn part(self, share: f64) -> Context<T> {
+        let Aside { way, disagreement, speed } = self.aside;
+        Context { aside: Aside { way: share * way, disagreement: share * disagreement, speed }, ..self }
     }
 
     /// Whether the wheels stand throughout the piece, by their counts.
     pub fn stands(&self) -> bool {
-        self.wheel_travel == [0.0; 2] && self.speed_change == [0.0; 2]
+        self.wheel_travel == [0.0; 2] && self.speed_change == [0.0; 2] && self.aside == Aside::NONE
     }
 
     /// Whether something may move the robot in the piece: its counts, or wheels that follow them late.
@@ -257,14 +286,33 @@ impl Progress {
         }
     }
 
+    /// The same run, which took longer by this share by the reference's clock than by the log's.
+    pub fn with_clock_excess(mut self, excess: f64) -> Progress {
+        self.now.clock_excess = excess;
+        self
+    }
+
     /// The next piece: its believed wheel travel \[m\], how long it takes \[s\], and the speeds of the left and the right
     /// wheel at its beginning and end \[m/s\].
     #[inline]
     pub fn piece(&mut self, travel: &WheelTravel, duration: f64, from: [f64; 2], to: [f64; 2]) -> Context {
+        self.piece_aside(travel, Aside::NONE, duration, from, to)
+    }
+
+    /// The same of a drive that also moves sideways.
+    #[inline(always)]
+    pub fn piece_aside(
+        &mut self,
+        travel: &WheelTravel,
+        aside: Aside,
+        duration: f64,
+        from: [f64; 2],
+        to: [f64; 2],
+    ) -> Context {
         let wheels = [travel.left, travel.right];
         let forward = 0.5 * (travel.left + travel.right);
         let rotation = (travel.right - travel.left) / self.now.wheelbase;
-        self.follow_turn(forward, rotation);
+        self.follow_turn(forward.abs().max(aside.way.abs()), rotation);
         let mean = [0, 1].map(|w| 0.5 * (from[w] + to[w]));
         let now = &mut self.now;
         now.duration = duration;
@@ -277,6 +325,10 @@ impl Progress {
         now.wheel_rotation = [0, 1].map(|w| wheels[w] / self.radius[w]);
         // Counters that oscillate about zero, as in a turn on the spot, add no path length.
         now.length = if now.speed == 0.0 { forward.abs() } else { forward * now.speed.signum() };
+        now.aside = aside;
+        if aside != Aside::NONE {
+            now.length = libm::hypot(forward, aside.way);
+        }
         now.reversed =
             [0, 1].map(|w| reversal(&mut self.sense[w], &mut self.behind[w], wheels[w], self.least_reversal[w]));
         if now.recorded {

@@ -119,6 +119,10 @@ pub fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
         text += &logs_table(&inspection.logs);
         text += "\n";
     }
+    if let Some(line) = disagreement_line(&inspection.logs) {
+        text += "\n";
+        text += &hanging("slip", 8, &line);
+    }
     text +=
         &inspection.logs.iter().find_map(|log| Some(picture(log, log.moves.as_ref()?, terminal))).unwrap_or_default();
     if !data.topics.is_empty() {
@@ -188,7 +192,28 @@ fn picture(log: &LogFacts, moves: &MovesFound, terminal: bool) -> String {
     )
 }
 
+/// What four wheels with rollers disagree on, over all logs.
+fn disagreement_line(logs: &[LogFacts]) -> Option<String> {
+    let of: Vec<(f64, f64)> = logs.iter().filter_map(|log| Some((log.disagreement?, log.length?))).collect();
+    let length = of.iter().map(|(_, length)| length).sum::<f64>();
+    (length > 0.0).then(|| {
+        let apart = of.iter().map(|(share, length)| share * length).sum::<f64>() / length;
+        format!(
+            "the wheels disagree by {:.1} mm for each metre of way: as much slips at least, as the counters alone show",
+            1e3 * apart
+        )
+    })
+}
+
 fn robot_line(robot: &Robot) -> String {
+    if !robot.drive.kind().has_axle_wheels() {
+        let kind = robot.drive.kind();
+        let numbers =
+            kind.parameters().iter().zip(robot.drive.values()).map(|(p, value)| format!("{} {value}", p.name));
+        let numbers = numbers.collect::<Vec<_>>().join(", ");
+        let ticks = robot.encoder.ticks_per_revolution();
+        return format!("{}: {}, {numbers}, {ticks} ticks per revolution", robot.name, kind.name());
+    }
     let (left, right) = (robot.drive.wheel_diameter_left(), robot.drive.wheel_diameter_right());
     let wheels = if left == right { format!("wheels {left} m") } else { format!("wheels {left} (left) and {right} m") };
     let encoder = &robot.encoder;

@@ -20,6 +20,15 @@ pub enum CompileError {
         /// Kind of the drive.
         drive: &'static str,
     },
+    /// A drive on wheels with rollers.
+    #[error(
+        "a robot with drive = \"{drive}\" cannot be compiled: it has a counter for each wheel, and the library on the robot reads two; \
+         correct its logs on a computer"
+    )]
+    Rollers {
+        /// Its kind.
+        drive: &'static str,
+    },
     /// A formula.
     #[error(
         "{effect} is a formula, and only effects of the catalogue that act on motion can be compiled ({}); take it out and learn or fit the \
@@ -75,6 +84,9 @@ pub fn compiled(model: &Model, noise: Option<&Noise>, start: Pose2) -> Result<Ve
     let robot = model.robot();
     if robot.drive.trucks().is_some() {
         return Err(CompileError::Drive { drive: robot.drive.kind().name() });
+    }
+    if robot.drive.kind().moves_sideways() {
+        return Err(CompileError::Rollers { drive: robot.drive.kind().name() });
     }
     let steps = model.parts().iter().filter_map(|part| step(part).transpose()).collect::<Result<Vec<_>, _>>()?;
     if steps.len() > MAX_LAWS {

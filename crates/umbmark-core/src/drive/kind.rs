@@ -32,6 +32,7 @@ struct Facts {
     about: &'static str,
     name: &'static str,
     counters: [&'static str; 2],
+    wheels: &'static [&'static str],
     parameters: &'static [Parameter],
     spellings: &'static [Spelling],
     effects: &'static [&'static str],
@@ -49,6 +50,7 @@ impl Facts {
             about: D::ABOUT,
             name: D::NAME,
             counters: D::COUNTERS,
+            wheels: D::WHEELS,
             parameters: D::PARAMETERS,
             spellings: D::SPELLINGS,
             effects: D::EFFECTS,
@@ -83,6 +85,16 @@ impl DriveKind {
     /// What its two counters are called in files.
     pub fn counters(self) -> [&'static str; 2] {
         self.facts().counters
+    }
+
+    /// What the counters are called in files whose readings become ticks of the axle: its two, or one for each wheel with rollers.
+    pub fn columns(self) -> Vec<&'static str> {
+        if self.moves_sideways() { self.facts().wheels.to_vec() } else { self.counters().to_vec() }
+    }
+
+    /// Whether it stands on wheels with rollers and moves sideways too.
+    pub fn moves_sideways(self) -> bool {
+        !self.facts().wheels.is_empty()
     }
 
     /// The numbers of its nominal robot beside those of the encoder.

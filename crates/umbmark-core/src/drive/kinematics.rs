@@ -1,6 +1,6 @@
 //! What a drive's own file says of it.
 
-use super::{ClapperDrive, Counting, DifferentialDrive, DriveError, Encoder, Wheel, WheelTravel};
+use super::{ClapperDrive, Counting, DifferentialDrive, DriveError, Encoder, Rollers, Wheel, WheelTravel};
 use crate::parameter::Parameter;
 use umbmark_odometry::gearing::Gearing;
 
@@ -26,6 +26,9 @@ pub(super) trait Kinematics: Sized {
 
     /// What its two counters are called in files.
     const COUNTERS: [&'static str; 2] = ["left", "right"];
+
+    /// What the counters of its wheels with rollers are called in files, which stand there in place of the two; none without such.
+    const WHEELS: &'static [&'static str] = &[];
 
     /// The numbers of its nominal robot beside those of the encoder.
     const PARAMETERS: &'static [Parameter];
@@ -75,6 +78,11 @@ pub(super) trait Kinematics: Sized {
 
     /// See [`Drive::trucks`](super::Drive::trucks).
     fn trucks(&self) -> Option<&ClapperDrive> {
+        None
+    }
+
+    /// See [`Drive::rollers`](super::Drive::rollers).
+    fn rollers(&self) -> Option<Rollers> {
         None
     }
 

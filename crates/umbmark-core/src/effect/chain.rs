@@ -106,7 +106,7 @@ impl<T: Evaluate> Chain<T> {
     /// Body motion from a true wheel travel.
     #[inline(always)]
     pub fn body(&self, at: &Context<T>, travel: &WheelTravel<T>) -> Displacement2<T> {
-        let mut motion = [self.drive.displacement(travel)];
+        let mut motion = [Displacement2 { sideways: T::from(at.aside.way), ..self.drive.displacement(travel) }];
         self.change_bodies(at, &mut motion);
         let [motion] = motion;
         motion
@@ -115,7 +115,8 @@ impl<T: Evaluate> Chain<T> {
     /// Body motions from true wheel travels, at one context, written into `motions`.
     pub(crate) fn bodies(&self, at: &Context<T>, travels: &[WheelTravel<T>], motions: &mut Vec<Displacement2<T>>) {
         motions.clear();
-        motions.extend(travels.iter().map(|travel| self.drive.displacement(travel)));
+        let sideways = T::from(at.aside.way);
+        motions.extend(travels.iter().map(|travel| Displacement2 { sideways, ..self.drive.displacement(travel) }));
         self.change_bodies(at, motions);
     }
 
@@ -162,7 +163,8 @@ impl<T: Evaluate> Chain<T> {
         if self.has_clock() {
             let further = self.late(at.time) - at.late;
             let back = [-at.speed, -at.turn_rate].map(|rate| further * rate);
-            seen.advance(&Displacement2 { forward: back[0], sideways: T::from(0.0), rotation: back[1] });
+            let sideways = if at.speed_aside == 0.0 { T::from(0.0) } else { further * -at.speed_aside };
+            seen.advance(&Displacement2 { forward: back[0], sideways, rotation: back[1] });
         }
         for acting in self.acting(Changes::SEEN) {
             if let ActingLaws::Entry(laws) = &acting.laws {

@@ -5,7 +5,7 @@ use crate::geometry::Pose2;
 use crate::path::Direction;
 
 use umbmark_odometry::context::Place;
-pub use umbmark_odometry::context::{Context, Progress};
+pub use umbmark_odometry::context::{Aside, Context, Progress};
 
 /// The place of a run in its session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,6 +43,8 @@ pub struct Sight {
     pub late: f64,
     /// Speed of the axle's centre at the moment of that pose \[m/s\].
     pub speed: f64,
+    /// Its speed to the left there \[m/s\], of a drive that also moves sideways.
+    pub speed_aside: f64,
     /// The same \[rad/s\].
     pub turn_rate: f64,
     /// The frame of the predicted pose, in the frame of the poses that the reference measures; `None` of a measurement by tape at the end

@@ -26,7 +26,7 @@ impl Effect for Crab {
                   assumed as 0.3 degree; the public OptiOdom runs have 0.38 degree of it or of marker yaw.",
         signature: "The whole path is rotated about START by the angle and closes again, so return poses do not show it. Along the \
                     track, the direction of motion and the heading differ by a constant angle.",
-        confused_with: &["marker_yaw", "encoder_skew"],
+        confused_with: &["marker_yaw", "encoder_skew", "diagonal_diameter_ratio"],
         separated_by: "from encoder skew: a second speed. From marker yaw: no drive separates them; inspect how the marker is mounted",
         source: "geometry; first-order theory of side-periodic errors on closed paths; size assumed",
     };

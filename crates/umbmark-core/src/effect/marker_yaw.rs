@@ -29,7 +29,7 @@ impl Effect for MarkerYaw {
                   position is correct.",
         signature: "The direction of motion and the measured heading differ by a constant angle, at rest as well as in motion. A crab \
                     angle looks the same, except that it rotates the whole path about START.",
-        confused_with: &["crab", "encoder_skew"],
+        confused_with: &["crab", "encoder_skew", "diagonal_diameter_ratio"],
         separated_by: "from encoder skew: a second speed. From a crab angle: no drive separates them; inspect how the marker is mounted",
         source: "a gauge freedom of the reference frame; 0.38 degree of it, or of crab, is in the public OptiOdom runs",
     };

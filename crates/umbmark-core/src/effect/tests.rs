@@ -127,8 +127,68 @@ pub(super) fn probes() -> Vec<Track> {
     tracks
 }
 
+/// Motions of a base that also moves sideways, each driven in ten steps of 0.1 s: ahead, in a bend, on the spot, aslant while it turns, and to
+/// the left \[m, m, rad\].
+const SIDEWAYS: [[f64; 3]; 5] =
+    [[0.3, 0.0, 0.0], [0.3, 0.0, 0.8], [0.0, 0.0, -1.2], [-0.1, 0.25, 0.5], [0.0, 0.2, 0.0]];
+
+/// The log of a robot that makes these motions and truly is `truth`, with a pose at each sample; its heading is left out.
+pub(crate) fn sideways_log(truth: &Drive, robot: &Robot) -> TickLog {
+    let rollers = truth.rollers().unwrap();
+    let per_count = rollers.metres_per_count(robot.encoder.ticks_per_revolution());
+    let (mut log, mut pose, mut ways) = (TickLog::default(), Pose2::IDENTITY, vec![0.0; per_count.len()]);
+    log.rollers = vec![Vec::new(); per_count.len()];
+    log.clock_excess = 0.04;
+    let mut note = |pose: &Pose2, ways: &[f64]| {
+        let sample = log.time.len();
+        log.time.push(0.1 * sample as f64);
+        log.rollers.iter_mut().zip(ways).zip(&per_count).for_each(|((counts, way), per)| counts.push(way / per));
+        log.reference.push(ReferencePose { sample, x: pose.x, y: pose.y, heading: Some(pose.heading) });
+    };
+    note(&pose, &ways);
+    for [forward, sideways, rotation] in SIDEWAYS {
+        let step = Displacement2 { forward: 0.1 * forward, sideways: 0.1 * sideways, rotation: 0.1 * rotation };
+        for _ in 0..10 {
+            pose.advance(&step);
+            ways.iter_mut().zip(rollers.ways_of(&step)).for_each(|(way, more)| *way += more);
+            note(&pose, &ways);
+        }
+    }
+    [log.left, log.right] = robot.axle_ticks_of_rollers(&log.rollers).unwrap();
+    log
+}
+
+/// A robot of usual numbers that truly is `truth` must be where effects with these values put it, all along.
+pub(super) fn assert_rolls(truth: Drive, settings: &[Setting]) {
+    let robot = Robot { drive: truth.kind().usual(), ..Robot::labmate() };
+    let log = sideways_log(&truth, &robot);
+    let track = Track::from_log(&log, &robot).unwrap();
+    let mut model = Model::new(&robot);
+    let nominal = track.poses(&model.chain());
+    for (effect, parameter, value) in settings {
+        model.set(effect, parameter, *value).unwrap();
+    }
+    let mut most = 0.0_f64;
+    for ((pose, seen), plain) in track.poses(&model.chain()).iter().zip(&log.reference).zip(nominal) {
+        let off = (pose.x - seen.x).hypot(pose.y - seen.y) + (pose.heading - seen.heading.unwrap()).abs();
+        assert!(off < 1e-9, "{settings:?} {pose:?} {seen:?}");
+        most = most.max((plain.x - seen.x).hypot(plain.y - seen.y));
+    }
+    assert!(most > 1e-3, "{settings:?} {most}");
+}
+
+/// Whether all drives that may have an effect move sideways.
+fn is_of_rollers(entry: &Entry) -> bool {
+    entry.drives().each().all(DriveKind::moves_sideways)
+}
+
 /// Tracks on which an effect shows: of its own drive, where it has only that.
 fn probes_of(entry: &Entry) -> Vec<Track> {
+    if is_of_rollers(entry) {
+        let kind = entry.drives().each().next().unwrap();
+        let robot = Robot { drive: kind.usual(), ..Robot::labmate() };
+        return vec![Track::from_log(&sideways_log(&robot.drive, &robot), &robot).unwrap()];
+    }
     if !entry.drives().each().all(DriveKind::has_trucks) {
         return probes();
     }
@@ -358,6 +418,7 @@ fn each_number_acts_linearly_where_the_effect_does_nothing() {
 /// In a turn and on the first leg, with nothing at zero that an effect may depend on.
 fn contexts() -> [Context; 2] {
     let turn = Context {
+        aside: Aside { way: 3e-3, disagreement: -2e-3, speed: 0.15 },
         heading: 1.0,
         x: 2.0,
         y: -1.5,
@@ -384,6 +445,7 @@ fn contexts() -> [Context; 2] {
         axle_distance: 0.5,
         run: 2.0,
         direction: 1.0,
+        clock_excess: 0.03,
         recorded: false,
     };
     [turn, Context { last_turn: 0.0, wheel_speed: [0.2; 2], recorded: true, ..turn }]
@@ -395,8 +457,11 @@ fn an_effect_says_whether_it_depends_on_where_and_how_the_robot_drives() {
     for entry in CATALOGUE {
         let model = alone(entry, |p, robot| p.usual(robot));
         let chain = model.chain();
-        let anywhere = chain.displacement(&Context::default(), &travel);
-        let depends = contexts().iter().any(|at| chain.displacement(at, &travel) != anywhere);
+        let depends = contexts().iter().any(|at| {
+            // What moves a base to the side is a part of its motion.
+            let anywhere = Context { aside: Aside { disagreement: 0.0, ..at.aside }, ..Context::default() };
+            chain.displacement(at, &travel) != chain.displacement(&anywhere, &travel)
+        });
         assert_eq!(depends, model.varies(), "{}", entry.about.name);
     }
 }

@@ -19,7 +19,15 @@ impl Effect for Wheelbase {
                   the wheelbase. Scrub in turns on the spot acts the same way and is part of the measured value.",
         signature: "Every turn is too small (E_b > 1) or too large (E_b < 1). The return heading error per side is -(E_b - 1) π/2 in \
                     ccw runs and the opposite in cw runs.",
-        confused_with: &["scale", "turn_slip", "turn_slip_rate", "speed_slip", "caster_kick", "centripetal_load"],
+        confused_with: &[
+            "scale",
+            "turn_slip",
+            "turn_slip_rate",
+            "speed_slip",
+            "caster_kick",
+            "centripetal_load",
+            "roller_scale",
+        ],
         separated_by: "turns on the spot, together with one straight leg measured by tape",
         source: "Borenstein & Feng (1995), section 2",
     };

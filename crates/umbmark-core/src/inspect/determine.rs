@@ -8,7 +8,7 @@
 
 use super::Group;
 use crate::drive::{Robot, WheelTravel};
-use crate::effect::{Chain, Model, RunContext, TestKind, find};
+use crate::effect::{Aside, Chain, Model, RunContext, TestKind, find};
 use crate::engine::{Convoy, Predicted};
 use crate::geometry::{Dual, Pose2, seeded};
 use crate::likelihood::Noise;
@@ -282,35 +282,39 @@ impl<'a> Seen<'a> {
     }
 
     /// Travel and time of each step of a log.
-    fn of_log(&self, log: &TickLog, ends: &[usize]) -> Vec<(WheelTravel, f64)> {
+    fn of_log(&self, log: &TickLog, ends: &[usize]) -> Vec<(WheelTravel, Aside, f64)> {
+        let asides = log.asides(self.robot);
         let per_tick = self.robot.metres_per_tick();
         let step = |pair: &[usize]| {
             let (a, b) = (pair[0], pair[1]);
             let (left, right) = (log.left[b] - log.left[a], log.right[b] - log.right[a]);
             let travel = WheelTravel { left: left * per_tick.left, right: right * per_tick.right };
-            (travel, (log.time[b] - log.time[a]).max(1e-6))
+            let seconds = (log.time[b] - log.time[a]).max(1e-6);
+            let [way, disagreement] = asides.get(b).map_or([0.0; 2], |to| [to[0] - asides[a][0], to[1] - asides[a][1]]);
+            (travel, Aside { way, disagreement, speed: way / seconds }, seconds)
         };
         ends.windows(2).map(step).collect()
     }
 
     /// Travel and time of each piece of a path.
-    fn of_path(&self, path: &Path, direction: Direction) -> Vec<(WheelTravel, f64)> {
+    fn of_path(&self, path: &Path, direction: Direction) -> Vec<(WheelTravel, Aside, f64)> {
         let pieces = |m: crate::path::Move| {
             let travel = m.wheel_travel(&self.robot.drive).scaled(1.0 / PIECES as f64);
-            std::iter::repeat_n((travel, 1.0), PIECES)
+            std::iter::repeat_n((travel, Aside::NONE, 1.0), PIECES)
         };
         path.moves(direction).into_iter().flat_map(pieces).collect()
     }
 
     /// The believed poses along some travel, with their derivatives.
-    fn along(&self, travels: &[(WheelTravel, f64)], direction: Option<Direction>, recorded: bool) -> Vec<Piece> {
+    fn along(&self, travels: &[(WheelTravel, Aside, f64)], direction: Option<Direction>, recorded: bool) -> Vec<Piece> {
         let mut progress = RunContext { direction, ..RunContext::default() }.progress(self.robot, recorded);
         let mut pose: Pose2<Dual> = Pose2::IDENTITY.lift();
-        let one = |(travel, seconds): &(WheelTravel, f64)| {
+        let one = |(travel, aside, seconds): &(WheelTravel, Aside, f64)| {
             let speeds = [travel.left / seconds, travel.right / seconds];
-            let at = progress.piece(travel, *seconds, speeds, speeds);
+            let at = progress.piece_aside(travel, *aside, *seconds, speeds, speeds);
             pose = pose.moved(&self.chain.displacement(&at.at_pose(&pose), travel));
-            let way = 0.5 * (travel.left + travel.right).abs();
+            let ahead = 0.5 * (travel.left + travel.right).abs();
+            let way = if aside.way == 0.0 { ahead } else { libm::hypot(ahead, aside.way) };
             let turned = (travel.right - travel.left).abs() / self.robot.drive.wheelbase();
             Piece { pose: pose.value(), slopes: [0, 1, 2].map(|lane| pose.slope(lane)), way, turned }
         };

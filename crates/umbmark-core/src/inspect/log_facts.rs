@@ -34,6 +34,9 @@ pub struct LogFacts {
     pub mended: Mended,
     /// Length of the path of the axle's centre by the ticks \[m\], where the robot is known.
     pub length: Option<f64>,
+    /// Of wheels with rollers, more than three of them: what no motion of the body explains of their ways, root mean square over the wheels, summed
+    /// without its sign over steps of at least 2 cm, as a share of the length.
+    pub disagreement: Option<f64>,
     /// Heading at the end by the ticks, full turns counted \[rad\], where the robot is known.
     pub heading: Option<f64>,
     /// How far that is from the path's own heading \[rad\], where the path is known.
@@ -114,6 +117,7 @@ impl LogFacts {
             gaps: steps.iter().filter(|step| **step > 5.0 * period).count(),
             mended: log.mended,
             length,
+            disagreement: robot.and_then(|robot| disagreement(log, robot, length.unwrap_or(0.0))),
             heading: poses.last().map(|pose| pose.heading),
             heading_off: path.and_then(|path| Some(heading_off(path, run.direction, poses.last()?))),
             wheels: setup
@@ -128,12 +132,27 @@ impl LogFacts {
 
 /// Length of the path of the axle's centre by the ticks \[m\].
 fn length(log: &TickLog, robot: &Robot) -> f64 {
-    let per_tick = robot.metres_per_tick();
-    let forward = |i: usize| {
-        let (left, right) = (log.left[i + 1] - log.left[i], log.right[i + 1] - log.right[i]);
-        0.5 * (left * per_tick.left + right * per_tick.right).abs()
-    };
-    (0..log.time.len().saturating_sub(1)).map(forward).sum()
+    log.ways(robot).iter().sum()
+}
+
+/// Wheels disagree over steps of so much way: over shorter ones, whole counts make them \[m\].
+const STEP: f64 = 0.02;
+
+/// What the wheels disagree on, as a share of the way.
+fn disagreement(log: &TickLog, robot: &Robot, length: f64) -> Option<f64> {
+    let asides = log.asides(robot);
+    if asides.is_empty() || log.rollers.len() < 4 || length < STEP {
+        return None;
+    }
+    let (mut gone, mut from, mut apart) = (0.0, 0, 0.0);
+    for (sample, way) in log.ways(robot).iter().enumerate() {
+        gone += way;
+        if gone >= STEP {
+            apart += (asides[sample + 1][1] - asides[from][1]).abs();
+            (gone, from) = (0.0, sample + 1);
+        }
+    }
+    Some(apart / length)
 }
 
 impl ReferenceFacts {

@@ -5,7 +5,7 @@ use super::pace;
 use super::track::Track;
 use crate::dataset::TickLog;
 use crate::drive::{Robot, WheelTravel};
-use crate::effect::{RunContext, Sight};
+use crate::effect::{Aside, RunContext, Sight};
 use crate::engine::Convoy;
 use crate::geometry::Pose2;
 use crate::path::{Direction, Path, Pieces, SpeedProfile};
@@ -34,7 +34,9 @@ impl Track {
         check(log)?;
         let per_tick = robot.metres_per_tick();
         let speeds = pace::wheel_speeds(log, &per_tick);
-        let mut progress = place.progress(robot, true);
+        let asides = log.asides(robot);
+        let paces = pace::speeds_aside(log, &asides);
+        let mut progress = place.progress(robot, true).with_clock_excess(log.clock_excess);
         let mut track = Track::empty();
         let mut due = samples.peekable();
         let (mut left, mut right) = (0.0, 0.0);
@@ -42,11 +44,19 @@ impl Track {
             let before = sample.saturating_sub(1);
             let duration = log.time[sample] - log.time[before];
             let travel = WheelTravel { left: (l - left) * per_tick.left, right: (r - right) * per_tick.right };
-            track.push(travel, progress.piece(&travel, duration, speeds[before], speeds[sample]));
+            let mut aside = Aside::NONE;
+            if let Some([to, apart]) = asides.get(sample) {
+                // The first sample is START.
+                let [from, were] = if sample == 0 { [0.0; 2] } else { asides[before] };
+                let speed = 0.5 * (paces[before] + paces[sample]);
+                aside = Aside { way: to - from, disagreement: apart - were, speed };
+            }
+            track.push(travel, progress.piece_aside(&travel, aside, duration, speeds[before], speeds[sample]));
             (left, right) = (*l, *r);
             track.duration = log.time[sample] - log.time[0];
             while due.next_if_eq(&sample).is_some() {
-                track.observe(sight(track.duration, speeds[sample], robot));
+                let speed_aside = paces.get(sample).copied().unwrap_or(0.0);
+                track.observe(Sight { speed_aside, ..sight(track.duration, speeds[sample], robot) });
             }
         }
         Ok(track)
@@ -138,5 +148,5 @@ enum Observed {
 /// The moment at which the wheels have these speeds \[m/s\].
 fn sight(time: f64, [left, right]: [f64; 2], robot: &Robot) -> Sight {
     let (speed, turn_rate) = (0.5 * (left + right), (right - left) / robot.drive.wheelbase());
-    Sight { time, late: 0.0, speed, turn_rate, room: Some(Pose2::IDENTITY) }
+    Sight { time, speed, turn_rate, room: Some(Pose2::IDENTITY), ..Sight::default() }
 }

@@ -1,7 +1,7 @@
 //! The moment that a measurement shows: its time stamp minus the delay of the reference.
 
 use super::track::Track;
-use crate::effect::{Chain, Context, Evaluate, Sight};
+use crate::effect::{Aside, Chain, Context, Evaluate, Sight};
 
 /// Steps of time that rounding makes \[s\].
 const ROUNDING: f64 = 1e-9;
@@ -43,7 +43,7 @@ impl<'a> Moments<'a> {
         while self.made < contexts.len() && ends(&contexts[self.made]) <= time + ROUNDING {
             self.made += 1;
         }
-        let still = Sight { late, speed: 0.0, turn_rate: 0.0, ..*sight };
+        let still = Sight { late, speed: 0.0, speed_aside: 0.0, turn_rate: 0.0, ..*sight };
         let in_piece = |made: usize| {
             let at = &contexts[made];
             let gone = if at.duration > 0.0 { (time - at.time) / at.duration } else { 0.0 };
@@ -55,7 +55,7 @@ impl<'a> Moments<'a> {
             } else {
                 (pace * at.speed, pace * at.turn_rate)
             };
-            Moment { made, share, sight: Sight { speed, turn_rate, ..still } }
+            Moment { made, share, sight: Sight { speed, speed_aside: at.aside.speed, turn_rate, ..still } }
         };
         match contexts.get(self.made) {
             Some(at) if time >= at.time - ROUNDING || self.made == 0 && at.time <= ROUNDING => in_piece(self.made),
@@ -76,7 +76,8 @@ fn faster(at: &Context) -> usize {
 /// which are `ratio` times as long as the way is. Beyond the ends of the log the robot keeps its speed.
 fn course(at: &Context, ratio: f64, gone: f64) -> (f64, f64) {
     let (mean, half) = (at.wheel_speed[faster(at)], 0.5 * at.speed_change[faster(at)]);
-    if !(0.0..=1.0).contains(&gone) || half.abs() > mean.abs() || mean == 0.0 {
+    // Of a base that moves sideways, no wheel of the axle says how far it got.
+    if at.aside != Aside::NONE || !(0.0..=1.0).contains(&gone) || half.abs() > mean.abs() || mean == 0.0 {
         return (gone, 1.0);
     }
     let [from, to] = [mean - half, mean + half].map(|speed| speed / mean * ratio);

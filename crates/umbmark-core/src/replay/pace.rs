@@ -32,6 +32,27 @@ impl Cursor {
     }
 }
 
+/// Speeds to the left at each sample \[m/s\], of ways to the left since START and by the same window; nothing where there are none.
+pub(super) fn speeds_aside(log: &TickLog, asides: &[[f64; 2]]) -> Vec<f64> {
+    if asides.is_empty() {
+        return Vec::new();
+    }
+    let ends = (log.time[0], log.time[log.time.len() - 1]);
+    let at = |time: f64| {
+        let after = log.time.partition_point(|t| *t <= time).clamp(1, log.time.len().max(2) - 1);
+        let after = after.min(log.time.len() - 1);
+        let before = after.saturating_sub(1);
+        let span = log.time[after] - log.time[before];
+        let share = if span > 0.0 { (time - log.time[before]) / span } else { 0.0 };
+        asides[before][0] + share * (asides[after][0] - asides[before][0])
+    };
+    let speed = |time: &f64| {
+        let [from, to] = window(*time, ends.0, ends.1);
+        if to > from { (at(to) - at(from)) / (to - from) } else { 0.0 }
+    };
+    log.time.iter().map(speed).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -126,7 +126,11 @@ impl Track {
 
     /// Unsigned length of the path of the axle's centre by odometry \[m\].
     pub fn length(&self) -> f64 {
-        self.travel.iter().map(|t| 0.5 * (t.left + t.right).abs()).sum()
+        let way = |(travel, at): (&WheelTravel, &Context)| {
+            let ahead = 0.5 * (travel.left + travel.right).abs();
+            if at.aside.way == 0.0 { ahead } else { libm::hypot(ahead, at.aside.way) }
+        };
+        self.travel.iter().zip(&self.contexts).map(way).sum()
     }
 
     /// Unsigned length of the path of the axle's centre by odometry after `made` pieces \[m\].

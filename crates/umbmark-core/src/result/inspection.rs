@@ -166,6 +166,9 @@ pub struct LogFacts {
     pub mended: Mended,
     /// Length of the way by the ticks, in m; null without a nominal robot.
     pub length_m: Option<f64>,
+    /// What the wheels disagree on, in m for each m of way: slip that shows without a reference; null where fewer than four wheels with rollers are
+    /// counted.
+    pub disagreement_m_per_m: Option<f64>,
     /// Heading at the end by the ticks, in rad; null without a nominal robot.
     pub heading_rad: Option<f64>,
     /// Its difference from the commanded heading, in rad; null if the path is not known.
@@ -200,6 +203,7 @@ impl From<&inspect::LogFacts> for LogFacts {
                 filled_in_poses: log.mended.filled_in,
             },
             length_m: log.length,
+            disagreement_m_per_m: log.disagreement,
             heading_rad: log.heading,
             heading_off_rad: log.heading_off,
             wheels: log.wheels.map(WheelFacts::from),

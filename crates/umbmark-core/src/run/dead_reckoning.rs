@@ -39,9 +39,15 @@ pub fn computed_end(log: &TickLog, robot: &Robot) -> (Option<Pose2>, f64) {
 pub(super) fn for_each_pose(log: &TickLog, robot: &Robot, mut visit: impl FnMut(&Pose2)) {
     let (per_tick, drive) = (robot.metres_per_tick(), &robot.drive);
     let (mut pose, mut left, mut right) = (Pose2::IDENTITY, 0.0, 0.0);
-    for (l, r) in log.left.iter().zip(&log.right) {
+    let asides = log.asides(robot);
+    let mut aside = 0.0;
+    for (sample, (l, r)) in log.left.iter().zip(&log.right).enumerate() {
         let travel = WheelTravel { left: (l - left) * per_tick.left, right: (r - right) * per_tick.right };
-        pose = pose.moved(&drive.displacement(&travel));
+        let mut motion = drive.displacement(&travel);
+        if let Some([to, _]) = asides.get(sample) {
+            (motion.sideways, aside) = (to - aside, *to);
+        }
+        pose = pose.moved(&motion);
         (left, right) = (*l, *r);
         visit(&pose);
     }
@@ -66,7 +72,7 @@ pub fn return_error(log: &TickLog, computed: &Pose2, end: EndPose) -> Option<Ret
 
 /// The measurements taken before the first count moved.
 pub fn standing_at_start(log: &TickLog) -> &[ReferencePose] {
-    let moved = (0..log.time.len()).find(|i| log.left[*i] != log.left[0] || log.right[*i] != log.right[0]);
+    let moved = (0..log.time.len()).find(|i| !log.is_at_rest(0, *i));
     let end = log.reference.partition_point(|pose| moved.is_none_or(|moved| pose.sample < moved));
     &log.reference[..end]
 }
@@ -74,8 +80,7 @@ pub fn standing_at_start(log: &TickLog) -> &[ReferencePose] {
 /// The measurements taken at the same counts as the last one, up to it.
 pub fn standing_at_end(log: &TickLog) -> &[ReferencePose] {
     let Some(last) = log.reference.last() else { return &[] };
-    let counts = |i: usize| (log.left[i], log.right[i]);
-    let moving = (0..last.sample).rev().find(|i| counts(*i) != counts(last.sample));
+    let moving = (0..last.sample).rev().find(|i| !log.is_at_rest(*i, last.sample));
     let start = log.reference.partition_point(|pose| moving.is_some_and(|moving| pose.sample <= moving));
     &log.reference[start..]
 }

@@ -99,8 +99,7 @@ impl TickLog {
 
     /// Times and headings while the wheels stand, rest by rest.
     fn rests(&self) -> impl Iterator<Item = Vec<(f64, f64)>> {
-        let counts = |sample: usize| (self.left[sample], self.right[sample]);
-        let rests = self.reference.chunk_by(move |a, b| counts(a.sample) == counts(b.sample));
+        let rests = self.reference.chunk_by(move |a, b| self.is_at_rest(a.sample, b.sample));
         rests.filter_map(|resting| {
             let [from, to] = [resting[0], resting[resting.len() - 1]].map(|pose| self.time[pose.sample]);
             let timed = resting.iter().filter_map(|pose| Some((self.time[pose.sample], pose.heading?)));

@@ -22,7 +22,7 @@ pub fn place(log: &mut TickLog, times: &[f64], poses: &[PoseRow]) -> usize {
     let (mut next, mut dropped) = (0, 0);
     let mut take_until = |log: &mut TickLog, time: f64| {
         while next < old.time.len() && old.time[next] <= time {
-            push(log, old.time[next], (old.left[next], old.right[next]));
+            push(log, old.time[next], (old.left[next], old.right[next]), old.rollers.iter().map(|counts| counts[next]));
             next += 1;
         }
         next
@@ -31,7 +31,10 @@ pub fn place(log: &mut TickLog, times: &[f64], poses: &[PoseRow]) -> usize {
         let after = take_until(log, *time);
         if log.time.last() != Some(time) {
             match between(&old, after, *time, longest) {
-                Some(counts) => push(log, *time, counts),
+                Some((counts, share)) => {
+                    let rolled = old.rollers.iter().map(|all| all[after - 1] + share * (all[after] - all[after - 1]));
+                    push(log, *time, counts, rolled);
+                }
                 None => {
                     dropped += 1;
                     continue;
@@ -47,22 +50,24 @@ pub fn place(log: &mut TickLog, times: &[f64], poses: &[PoseRow]) -> usize {
     dropped
 }
 
-fn push(log: &mut TickLog, time: f64, (left, right): (f64, f64)) {
+fn push(log: &mut TickLog, time: f64, (left, right): (f64, f64), rollers: impl ExactSizeIterator<Item = f64>) {
     log.time.push(time);
     log.left.push(left);
     log.right.push(right);
+    log.rollers.resize(rollers.len(), Vec::new());
+    log.rollers.iter_mut().zip(rollers).for_each(|(counts, count)| counts.push(count));
 }
 
-/// Counts at a time between sample `after` and the previous one, if they can be interpolated.
-fn between(log: &TickLog, after: usize, time: f64, longest: f64) -> Option<(f64, f64)> {
+/// Counts at a time between sample `after` and the previous one, and the share of the time between them, if they can be interpolated.
+fn between(log: &TickLog, after: usize, time: f64, longest: f64) -> Option<((f64, f64), f64)> {
     let before = after.checked_sub(1)?;
     let seconds = log.time.get(after)? - log.time[before];
     let (left, right) = (log.left[after] - log.left[before], log.right[after] - log.right[before]);
-    if seconds > longest && (left, right) != (0.0, 0.0) {
+    if seconds > longest && !log.is_at_rest(before, after) {
         return None;
     }
     let share = (time - log.time[before]) / seconds;
-    Some((log.left[before] + share * left, log.right[before] + share * right))
+    Some(((log.left[before] + share * left, log.right[before] + share * right), share))
 }
 
 /// The pose at the first sample, between two poses with no gap between them.

@@ -73,6 +73,8 @@ struct Told {
     /// D \[m\], and β \[rad\].
     way: f64,
     turn: f64,
+    /// Motion to the left by the wheels \[m\].
+    aside: f64,
     /// A \[m rad\]; 0 where the headings are those of the course, which is itself that of an arc.
     area: f64,
     /// Whether a heading was measured; else it is that of the course.
@@ -94,6 +96,7 @@ impl Reading {
             turned: sign * window.turned,
             way: 0.5 * (left + right),
             turn: (right - left) / wheelbase,
+            aside: rolled.aside,
             area: if window.with_heading && !window.headings_only { area / wheelbase } else { 0.0 },
             with_heading: window.with_heading,
         };
@@ -115,6 +118,11 @@ impl Told {
         if against { Told { moved: self.moved.map(|moved| -moved), ..self } } else { self }
     }
 
+    /// How far the wheels moved the body \[m\].
+    fn gone(&self) -> f64 {
+        if self.aside == 0.0 { self.way.abs() } else { libm::hypot(self.way, self.aside) }
+    }
+
     /// The equation of α, without the drift where that is 0.
     fn turn_row(&self, drift: f64) -> ([f64; 2], f64) {
         ([self.turn, drift * self.way], self.turned)
@@ -123,7 +131,7 @@ impl Told {
     /// The equations of both coordinates of u, for this gain of the rotations.
     fn way_rows(&self, gain: f64) -> [([f64; 4], f64); 2] {
         let (sinc, half) = (0.5 * self.turned).sinc_cos();
-        let (ahead, aside) = (self.way * sinc, gain * self.area);
+        let (ahead, aside) = (self.way * sinc, gain * self.area + self.aside * sinc);
         // sin(α/2) is α/2 sinc(α/2).
         let rise = 0.5 * self.turned * sinc;
         let (real, imaginary) = (ahead * half - aside * rise, ahead * rise + aside * half);
@@ -170,7 +178,7 @@ impl Agreement {
             false => robust::fit(&ways),
         };
         // Limits the weight of a window to the largest wheel travel in any window.
-        let most = told.iter().map(|told| told.way.abs() + arm * told.turn.abs()).fold(0.0, f64::max);
+        let most = told.iter().map(|told| told.gone() + arm * told.turn.abs()).fold(0.0, f64::max);
         let stretch = libm::hypot(way.values[0], way.values[1]).max(1.0);
         let (mut off, mut whole) = ([0.0; 2], [0.0; 2]);
         for (row, pair) in turns.iter().zip(ways.chunks_exact(2)) {
@@ -183,7 +191,7 @@ impl Agreement {
         }
         let share = |off: f64, whole: f64| if whole > 0.0 { off / whole } else { 1.0 };
         let sum = |of: fn(&Told) -> f64| told.iter().map(of).sum::<f64>();
-        let (driven, turned) = (sum(|told| told.way.abs()), sum(|told| told.turn.abs()));
+        let (driven, turned) = (sum(Told::gone), sum(|told| told.turn.abs()));
         let least = MAIN * (driven + arm * turned);
         Agreement {
             way: [way.values[0], way.values[1]],
@@ -236,13 +244,13 @@ impl Agreement {
         for beside in windows {
             let told = reading.told(beside, wheelbase).along(self.ahead);
             let [x, y, left] = self.residual_of(&told);
-            let most = told.way.abs() + 0.5 * wheelbase * told.turn.abs();
+            let most = told.gone() + 0.5 * wheelbase * told.turn.abs();
             whole[0] += libm::hypot(told.moved[0], told.moved[1]);
             whole[1] += told.turned.abs();
             // A single wrong pose must not look like another wiring.
             off[0] += libm::hypot(x, y).min(2.0 * most);
             off[1] += left.abs().min(2.0 * most / (0.5 * wheelbase));
-            shown = [shown[0] + told.way.abs(), shown[1] + told.turn.abs()];
+            shown = [shown[0] + told.gone(), shown[1] + told.turn.abs()];
         }
         let least = [LEAST_WAY, LEAST_TURN];
         [0, 1].map(|k| if shown[k] > least[k] && whole[k] > 0.0 { off[k] / whole[k] } else { 0.0 })
@@ -302,7 +310,7 @@ mod tests {
                     to: 0.4,
                     ..Window::default()
                 };
-                (window, Rolling { travel: [way - 0.2 * turn, way + 0.2 * turn], area: 0.0 })
+                (window, Rolling { travel: [way - 0.2 * turn, way + 0.2 * turn], aside: 0.0, area: 0.0 })
             })
             .collect()
     }

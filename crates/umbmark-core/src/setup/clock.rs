@@ -1,7 +1,7 @@
 //! Delay of the reference's time stamps, run by run.
 
 use super::agreement::{Agreement, Beside, Reading};
-use super::windows::{Rolled, Window};
+use super::windows::{Rolled, Rolling, Window};
 use crate::stats::Measured;
 use crate::stats::robust::{biweight, median, quantile};
 
@@ -103,8 +103,10 @@ fn delay_of(windows: &[&Window], rolled: &Rolled, wheelbase: f64) -> Option<f64>
     let moved = |w: &&Window| if w.headings_only { 0.0 } else { libm::hypot(w.moved[0], w.moved[1]) };
     let way: Vec<f64> = windows.iter().map(moved).collect();
     let only = windows.iter().any(|w| w.headings_only);
-    let rolls = |travel: [f64; 2]| if only { 0.5 * (travel[1] - travel[0]).abs() } else { faster(travel) };
-    let still: Vec<f64> = windows.iter().map(|w| rolls(rolled.between(w.from, w.to).travel)).collect();
+    let rolls = |rolling: Rolling| {
+        if only { 0.5 * (rolling.travel[1] - rolling.travel[0]).abs() } else { faster(&rolling) }
+    };
+    let still: Vec<f64> = windows.iter().map(|w| rolls(rolled.between(w.from, w.to))).collect();
     // Positions in another unit than metres must not outweigh the rotations.
     let unit = Some(ratio(&way, &still)).filter(|ratio| *ratio > OTHER_UNIT).unwrap_or(1.0);
     let seen: Vec<f64> =
@@ -115,7 +117,7 @@ fn delay_of(windows: &[&Window], rolled: &Rolled, wheelbase: f64) -> Option<f64>
     let reach = (FARTHEST / STEP).round() as i32;
     let off = |late: f64| {
         // The travel of the faster wheel is that of the body plus that of the lever arm, for all signs of the counts.
-        let own: Vec<f64> = windows.iter().map(|w| rolls(rolled.between(w.from - late, w.to - late).travel)).collect();
+        let own: Vec<f64> = windows.iter().map(|w| rolls(rolled.between(w.from - late, w.to - late))).collect();
         let ratio = alike.unwrap_or_else(|| ratio(&seen, &own));
         let most = 2.0 * ratio * own.iter().fold(0.0_f64, |most, v| most.max(*v));
         own.iter().zip(&seen).map(|(own, seen)| (seen - ratio * own).abs().min(most)).sum::<f64>()
@@ -125,9 +127,13 @@ fn delay_of(windows: &[&Window], rolled: &Rolled, wheelbase: f64) -> Option<f64>
     (least > 0.0).then(|| if off(0.0) > least * (1.0 + CLEARLY) { late } else { 0.0 })
 }
 
-/// The travel of the faster wheel.
-fn faster([left, right]: [f64; 2]) -> f64 {
-    left.abs().max(right.abs())
+/// The travel of the faster wheel; where the robot moves sideways, that of a wheel of the axle which would roll along its way.
+fn faster(rolling: &Rolling) -> f64 {
+    let [left, right] = rolling.travel;
+    if rolling.aside == 0.0 {
+        return left.abs().max(right.abs());
+    }
+    libm::hypot(0.5 * (left + right), rolling.aside) + 0.5 * (right - left).abs()
 }
 
 /// Ratio of the motion of the reference to that of the wheels, from windows with much motion.

@@ -39,6 +39,7 @@ fn is_noisy(log: &TickLog) -> bool {
         };
         stands(&log.left)
             && stands(&log.right)
+            && log.rollers.iter().all(|counts| stands(counts))
             && poses[EDGE..RESTING - EDGE].iter().any(|pose| apart(pose, &poses[EDGE]))
     })
 }
@@ -47,7 +48,7 @@ fn is_noisy(log: &TickLog) -> bool {
 fn is_same(one: &TickLog, other: &TickLog) -> bool {
     let counts = |log: &TickLog| {
         let since = |counts: &[f64]| counts.iter().map(|count| count - counts[0]).collect::<Vec<_>>();
-        [since(&log.left), since(&log.right)]
+        [&log.left, &log.right].into_iter().chain(&log.rollers).map(|counts| since(counts)).collect::<Vec<_>>()
     };
     one.reference == other.reference && one.time.len() == other.time.len() && counts(one) == counts(other)
 }

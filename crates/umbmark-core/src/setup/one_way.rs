@@ -81,7 +81,7 @@ fn best(own: &Beside, agreement: &Agreement, rising: [bool; 2], wheelbase: f64) 
     let signed = tried.map(|back| {
         let [left, right] = back.map(|back| if back { -1.0 } else { 1.0 });
         let [l, r] = rolled.travel;
-        (*window, Rolling { travel: [left * l, right * r], area: left * right * rolled.area })
+        (*window, Rolling { travel: [left * l, right * r], aside: 0.0, area: left * right * rolled.area })
     });
     signed.min_by(|a, b| off(a, agreement, wheelbase).total_cmp(&off(b, agreement, wheelbase))).unwrap_or(*own)
 }

@@ -175,11 +175,14 @@ impl Returned {
 /// Way by the ticks of a log \[m\]; `None` where the robot has none.
 pub(super) fn way(log: &TickLog, robot: &Robot) -> Option<f64> {
     let per_tick = robot.metres_per_tick();
+    let asides = log.asides(robot);
     let steps = log.left.windows(2).zip(log.right.windows(2));
     let way: f64 = steps
-        .map(|(l, r)| {
+        .enumerate()
+        .map(|(k, (l, r))| {
             let travel = WheelTravel { left: (l[1] - l[0]) * per_tick.left, right: (r[1] - r[0]) * per_tick.right };
-            travel.rolled()
+            let aside = asides.get(k + 1).map_or(0.0, |[to, _]| (to - asides[k][0]).abs());
+            travel.rolled().max(aside)
         })
         .sum();
     (way > 0.0 && way.is_finite()).then_some(way)

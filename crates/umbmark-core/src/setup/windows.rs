@@ -100,6 +100,8 @@ pub(super) fn usual_step(time: &[f64]) -> f64 {
 pub(super) struct Rolling {
     /// Travel of the left and the right wheel \[m\].
     pub travel: [f64; 2],
+    /// Motion to the left \[m\], of a drive that moves sideways.
+    pub aside: f64,
     /// ½ ∫ (r dl - l dr), l and r being the travel since the earlier time: 0 where both wheels roll in one proportion throughout, as on
     /// an arc, and positive where the robot turns left first and drives ahead afterwards \[m²\].
     pub area: f64,
@@ -118,6 +120,8 @@ pub(super) struct Rolled<'a> {
     /// Travel of both wheels from the first sample to each \[m\]. That of coarse counters is smooth: the line between two readings is nearer
     /// to the wheels in its middle than at the readings, so a delay of half a reading would seem to agree best.
     travel: Vec<[f64; 2]>,
+    /// Way to the left since START at each sample \[m\]; nothing of a drive that does not move sideways.
+    asides: Vec<f64>,
     /// ½ ∫ (r dl - l dr) from the first sample to each \[m²\].
     areas: Vec<f64>,
     /// Samples a second, on average.
@@ -136,7 +140,8 @@ impl<'a> Rolled<'a> {
         let counted = log.left.iter().zip(&log.right);
         let travel = counted.map(|(l, r)| [(l - log.left[0]) * left, (r - log.right[0]) * right]).collect();
         let (counts, areas) = (log.count_lengths(robot), vec![0.0; times.len()]);
-        let mut rolled = Rolled { times, counts, travel, areas, rate };
+        let asides = log.asides(robot).into_iter().map(|[way, _]| way).collect();
+        let mut rolled = Rolled { times, counts, travel, asides, areas, rate };
         if rolled.uncertain(robot.drive.wheelbase()) > COARSE {
             let readings: Vec<f64> = (0..times.len()).filter(|k| !log.is_put_in(*k)).map(|k| times[k]).collect();
             rolled.travel = rolled.smooth(LONG.max(2.0 * usual_step(&readings)));
@@ -208,10 +213,24 @@ impl<'a> Rolled<'a> {
         (now, self.areas[before] + swept(self.travel[before], now))
     }
 
+    /// Way to the left by a time, like [`Rolled::on_the_line`].
+    fn aside_at(&self, time: f64) -> f64 {
+        if self.asides.is_empty() {
+            return 0.0;
+        }
+        let times = self.times;
+        let after = self.after(time).clamp(1, times.len().max(2) - 1);
+        let (before, after) = (after - 1, after.min(times.len() - 1));
+        let span = times[after] - times[before];
+        let share = if span > 0.0 { ((time - times[before]) / span).clamp(-50.0, 50.0) } else { 0.0 };
+        self.asides[before] + share * (self.asides[after] - self.asides[before])
+    }
+
     /// What lies between two times.
     pub fn between(&self, from: f64, to: f64) -> Rolling {
+        let aside = self.aside_at(to) - self.aside_at(from);
         let ((from, before), (to, after)) = (self.at(from), self.at(to));
-        Rolling { travel: way(from, to), area: after - before - swept(from, to) }
+        Rolling { travel: way(from, to), aside, area: after - before - swept(from, to) }
     }
 }
 
@@ -285,7 +304,7 @@ mod tests {
         let robot = Robot::labmate();
         let (rolled, per_tick) = (Rolled::new(&log, &robot), robot.metres_per_tick());
         for (from, to) in [(0.0, 4.0), (1.5, 2.5), (0.73, 3.18)] {
-            let Rolling { travel: [left, right], area } = rolled.between(from, to);
+            let Rolling { travel: [left, right], area, .. } = rolled.between(from, to);
             let expected = [500.0 * (2.0 - from) * per_tick.left, 300.0 * (to - 2.0) * per_tick.right];
             assert!((left - expected[0]).abs() < 1e-12 && (right - expected[1]).abs() < 1e-12);
             assert!((area + 0.5 * left * right).abs() < 1e-12, "{area}");

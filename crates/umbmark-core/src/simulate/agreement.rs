@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::drive::DriveKind;
+use crate::effect::tests::sideways_log;
 use crate::effect::{CATALOGUE, Changes, Entry, Model, RunContext};
 use crate::parameter::{Parameter, Role};
 use crate::path::{CIRCLE, FIGURE_EIGHT, SQUARE, SpeedProfile};
@@ -116,6 +117,12 @@ fn replay_of_recorded_ticks_meets_the_measured_poses_as_near_as_ticks_tell_place
 /// a square.
 fn everything_measured(model: &Model) -> Vec<f64> {
     let mut all = Vec::new();
+    if model.robot().drive.kind().moves_sideways() {
+        // Paths have no moves to the side; logs have.
+        let log = sideways_log(&model.robot().drive, model.robot());
+        let track = Track::from_log(&log, model.robot()).unwrap();
+        return track.poses(&model.chain()).iter().flat_map(|pose| [pose.x, pose.y, pose.heading]).collect();
+    }
     if !model.robot().drive.kind().has_tick_logs() {
         let (mut simulator, mut truth) =
             opened(model, &path(&SQUARE, &[1.0]), Odometry::of(model.robot()), Phase::Edge);
@@ -141,7 +148,14 @@ fn everything_measured(model: &Model) -> Vec<f64> {
 fn every_number_of_every_effect_shows_in_what_is_measured() {
     for entry in CATALOGUE {
         let of_trucks = entry.drives().each().all(DriveKind::has_trucks);
-        let robot = if of_trucks { Preset::find("clapper").unwrap().robot() } else { Robot::labmate() };
+        let of_rollers = entry.drives().each().find(|_| entry.drives().each().all(DriveKind::moves_sideways));
+        let robot = if let Some(kind) = of_rollers {
+            Robot { drive: kind.usual(), ..Robot::labmate() }
+        } else if of_trucks {
+            Preset::find("clapper").unwrap().robot()
+        } else {
+            Robot::labmate()
+        };
         let mut usual = Model::new(&robot);
         put(&mut usual, entry, true);
         if entry.about.name == "bumps" {

@@ -26,6 +26,10 @@ impl Recording {
     fn reckon(&mut self, robot: &Robot) {
         let log = &mut self.log;
         [log.left, log.right] = robot.axle_ticks([std::mem::take(&mut log.left), std::mem::take(&mut log.right)]);
+        log.rollers = robot.counters_of_rollers([&log.left, &log.right]);
+        if let Some(ticks) = robot.axle_ticks_of_rollers(&log.rollers) {
+            [log.left, log.right] = ticks;
+        }
         let (per_tick, mut before, mut pose) = (robot.metres_per_tick(), [0.0; 2], Pose2::IDENTITY);
         for (computed, (left, right)) in self.computed.iter_mut().zip(log.left.iter().zip(&log.right)) {
             let [l, r] = before;

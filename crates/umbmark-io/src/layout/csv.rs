@@ -204,7 +204,8 @@ const CSV: LogFormat = LogFormat { ending: "csv", bytes: csv, same: same_record 
 /// Whether two logs hold the same samples and poses, whatever had to be mended in either.
 fn same_record(a: &TickLog, b: &TickLog) -> bool {
     let sense = |log: &TickLog| (log.relative, log.headings_only);
-    (&a.time, &a.left, &a.right, &a.reference, sense(a)) == (&b.time, &b.left, &b.right, &b.reference, sense(b))
+    let counts = |log: &TickLog| (log.left.clone(), log.right.clone(), log.rollers.clone());
+    (&a.time, counts(a), &a.reference, sense(a)) == (&b.time, counts(b), &b.reference, sense(b))
 }
 
 fn csv(data: &Dataset, _: &Run, log: &TickLog) -> Result<Vec<u8>, DatasetError> {

@@ -6,6 +6,10 @@
 //! `encRes` ticks per revolution, `L` the side of the square \[m\] where the path is one. The authors compare the last row
 //! of each run, so the return error is taken there and reproduces their published numbers.
 //!
+//! Of bases that move sideways, rows end with the ticks of this cycle of each wheel. Mecanum (`omni4`, front left, front right, rear left, rear
+//! right, those on the right counting up when they roll back): `Li` the distances of front and rear wheels and of left and right ones \[m\],
+//! `Di` four diameters. Three omni wheels (`omni3`, front right, front left, rear): `Li` their distance from the centre, `Di` three diameters.
+//!
 //! Of a tricycle (`tricyc`), whose front wheel is driven and steered: `Li` the distance of that wheel from the rear axle \[m\], `Di` its
 //! diameter \[m\], `Thi` what is added to its angle \[rad\]; rows end with its ticks of this cycle and its angle in it \[rad\]: a
 //! [`TricycleDrive`]. Its track width stands nowhere and is taken to be `Li`: nothing but the size of wheel noise depends on it.
@@ -27,7 +31,9 @@ use crate::source::Source;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::{Dataset, ReferencePose, TickLog};
-use umbmark_core::drive::{DifferentialDrive, Encoder, Robot, TricycleDrive};
+use umbmark_core::drive::{
+    DifferentialDrive, Drive, DriveError, Encoder, MecanumDrive, Omni3Drive, Robot, TricycleDrive,
+};
 use umbmark_core::effect::TestKind;
 use umbmark_core::geometry::wrap;
 use umbmark_core::path::{Path as DrivenPath, SQUARE, SpeedProfile};
@@ -40,6 +46,12 @@ pub(super) const LAYOUT: Layout = Layout::new("optiodom", "a set of OptiOdom: *_
 
 const METADATA: &str = "_metadata.csv";
 const TRICYCLE: &str = "tricyc";
+const MECANUM: &str = "omni4";
+const THREE_WHEELS: &str = "omni3";
+/// Clocks that differ by more than this share are told.
+const CLOCK_EXCESS: f64 = 0.03;
+/// Whether each wheel of a mecanum base counts down ahead.
+const BACKWARD: [bool; 4] = [false, true, false, true];
 /// Counts a revolution in which steering angles, radians in the files, are kept.
 const STEERING: f64 = 1e6;
 
@@ -84,6 +96,18 @@ fn read_set(folder: &Path, set: &str, names: &[String]) -> Result<Dataset, Datas
         let found = format!("it has OptiOdom metadata and neither {set}_run-01.csv nor {set}_run-01_odo.csv");
         return Err(not_a_dataset(folder, found));
     }
+    let clocks = Metadata::read(Source::open(&folder.join(format!("{set}{METADATA}")))?)?;
+    let excesses: Vec<f64> = runs.iter().filter_map(|run| clocks.clock_excess(run.number)).collect();
+    let most = excesses.iter().fold(0.0_f64, |most, excess| if excess.abs() > most.abs() { *excess } else { most });
+    if most.abs() > CLOCK_EXCESS {
+        assembly.warnings.push(format!(
+            "{}: by its metadata, runs took up to {:.1} % {} by the tracking system's clock than by that of the rows: cycles were lost or took \
+             longer than the rows say. Speeds are off by that share, and so are ways where the rows hold speeds and no counts",
+            clocks.file,
+            100.0 * most.abs(),
+            if most < 0.0 { "less" } else { "longer" }
+        ));
+    }
     for run in runs {
         add_run(&mut assembly, folder, &run)?;
     }
@@ -100,14 +124,23 @@ fn add_run(assembly: &mut Assembly, folder: &Path, run: &RunFiles) -> Result<(),
     let file = folder.join(&run.ticks);
     let source = Source::open(&file)?;
     let named = Named { number: Some(run.number), ..Named::default() };
-    let tricycle = assembly.robot().is_some_and(|robot| robot.drive.kind().steers());
+    let kind = assembly.robot().map(|robot| robot.drive.kind()).unwrap_or_default();
     let Some(track) = &run.track else {
-        let recording = if tricycle { parse_tricycle_run(source)? } else { parse_run(source)? };
+        let recording = match kind {
+            _ if kind.steers() => parse_tricycle_run(source)?,
+            _ if kind.moves_sideways() => {
+                let set = set_of(&run.ticks).unwrap_or_default();
+                let clocks = Metadata::read(Source::open(&folder.join(format!("{set}{METADATA}")))?)?;
+                let clock_excess = clocks.clock_excess(run.number).unwrap_or(0.0);
+                Recording { clock_excess, ..parse_rollers_run(source, kind.columns().len())? }
+            }
+            _ => parse_run(source)?,
+        };
         return assembly.add_recording(recording, None, &stem(&file), named, EndPose::Last);
     };
-    if tricycle {
-        let (key, value) = ("type".into(), "\"tricyc\"".into());
-        let remedy = "of tricycles, runs are read whose two clocks were brought together (*_run-NN.csv)".into();
+    if !kind.has_axle_wheels() {
+        let (key, value) = ("type".into(), format!("\"{}\"", kind.name()));
+        let remedy = "of this drive, runs are read whose two clocks were brought together (*_run-NN.csv)".into();
         return Err(At::new(source.file, 1).refuse(LineProblem::NotYet { key, value, remedy }));
     }
     let recording = parse_odometry(source)?;
@@ -162,9 +195,17 @@ pub(crate) fn parse_metadata(set: &str, source: Source) -> Result<(Robot, Option
     if kind.is_some_and(|(_, kind)| kind == TRICYCLE) {
         return Ok((tricycle(&metadata, set)?, None));
     }
+    if kind.is_some_and(|(_, kind)| kind == MECANUM) {
+        let drive = MecanumDrive::new(metadata.positive("Li", 0)?, metadata.positive("Li", 1)?, metadata.diameters()?);
+        return Ok((metadata.robot(set, drive)?, None));
+    }
+    if kind.is_some_and(|(_, kind)| kind == THREE_WHEELS) {
+        let drive = Omni3Drive::new(metadata.positive("Li", 0)?, metadata.diameters()?);
+        return Ok((metadata.robot(set, drive)?, None));
+    }
     if let Some((line, kind)) = kind.filter(|(_, kind)| *kind != "diff") {
         let value = crate::error::quoted(kind);
-        let remedy = "only differential drives (\"diff\") and tricycles (\"tricyc\") are read so far".into();
+        let remedy = "robots of type \"diff\", \"tricyc\", \"omni4\" (mecanum) and \"omni3\" are read".into();
         return Err(At::new(file, line).refuse(LineProblem::NotYet { key: "type".into(), value, remedy }));
     }
     let ticks = metadata.positive("ngear", 0)? * metadata.positive("encRes", 0)?;
@@ -232,6 +273,35 @@ impl Metadata {
         })
     }
 
+    /// By which share a run took longer by the tracking system's clock than by that of its rows, where the file says when it began and ended by
+    /// both.
+    fn clock_excess(&self, number: u32) -> Option<f64> {
+        let place = usize::try_from(number).ok()?.checked_sub(1)?;
+        let time = |key: &str| self.cells(key)?.1.get(place)?.parse::<f64>().ok().filter(|time| time.is_finite());
+        let [tracked, rows] =
+            [(time("gt_ti"), time("gt_tf")), (time("odo_ti"), time("odo_tf"))].map(|(from, to)| Some(to? - from?));
+        let excess = tracked? / rows? - 1.0;
+        (excess.abs() < 0.5).then_some(excess)
+    }
+
+    /// The diameters of so many wheels.
+    fn diameters<const N: usize>(&self) -> Result<[f64; N], DatasetError> {
+        let mut diameters = [0.0; N];
+        for (place, diameter) in diameters.iter_mut().enumerate() {
+            *diameter = self.positive("Di", place)?;
+        }
+        Ok(diameters)
+    }
+
+    /// The robot with a drive, where that is possible.
+    fn robot<D: Into<Drive>>(&self, set: &str, drive: Result<D, DriveError>) -> Result<Robot, DatasetError> {
+        let impossible = |error: &dyn std::fmt::Display| self.missing("robot", &error.to_string());
+        let ticks = self.positive("ngear", 0)? * self.positive("encRes", 0)?;
+        let drive = drive.map_err(|error| impossible(&error))?.into();
+        let encoder = Encoder::new(ticks, None, None).map_err(|error| impossible(&error))?;
+        Ok(Robot { name: format!("OptiOdom {set}"), drive, encoder })
+    }
+
     /// A number, where a cell has one.
     fn number_or(&self, key: &str, otherwise: f64) -> Result<f64, DatasetError> {
         let Some((line, cell)) = self.find(key).filter(|(_, cell)| !cell.is_empty()) else { return Ok(otherwise) };
@@ -257,7 +327,7 @@ impl Metadata {
 /// The rows of the wheel counters alone: time \[s\] and the ticks of this cycle, left wheel before right.
 pub(crate) fn parse_odometry(source: Source) -> Result<Recording, DatasetError> {
     let names = ["time (1st)", "odoL (2nd)", "odoR (3rd)"];
-    let columns = names.map(str::to_owned);
+    let columns = names.map(str::to_owned).to_vec();
     let mut recording = Recording { file: source.file.clone(), columns, per_cycle: true, ..Recording::default() };
     headless(source, &names, |line, [time, left, right]| {
         recording.lines.push(line);
@@ -273,7 +343,7 @@ pub(crate) fn parse_run(source: Source) -> Result<Recording, DatasetError> {
     let names = ["time (1st)", "x (2nd)", "y (3rd)", "theta (4th)", "odoR (5th)", "odoL (6th)"];
     let mut recording = Recording {
         file: source.file.clone(),
-        columns: [names[0], names[5], names[4]].map(str::to_owned),
+        columns: [names[0], names[5], names[4]].map(str::to_owned).to_vec(),
         per_cycle: true,
         ..Recording::default()
     };
@@ -294,7 +364,7 @@ pub(crate) fn parse_tricycle_run(source: Source) -> Result<Recording, DatasetErr
     let names = ["time (1st)", "x (2nd)", "y (3rd)", "theta (4th)", "odoWh (5th)", "ThWh (6th)"];
     let mut recording = Recording {
         file: source.file.clone(),
-        columns: [names[0], names[4], names[5]].map(str::to_owned),
+        columns: [names[0], names[4], names[5]].map(str::to_owned).to_vec(),
         angle_of_row: true,
         ..Recording::default()
     };
@@ -308,6 +378,43 @@ pub(crate) fn parse_tricycle_run(source: Source) -> Result<Recording, DatasetErr
         recording.counts[0].push(driven);
         recording.counts[1].push(wrap(angle) * STEERING / std::f64::consts::TAU);
         recording.reference.push(ReferencePose { sample, x, y, heading: Some(heading) });
+    })?;
+    Ok(recording)
+}
+
+/// The rows of a run of a base on three or four wheels with rollers.
+pub(crate) fn parse_rollers_run(source: Source, wheels: usize) -> Result<Recording, DatasetError> {
+    if wheels == 3 {
+        let names = ["time (1st)", "x (2nd)", "y (3rd)", "theta (4th)", "odo1 (5th)", "odo2 (6th)", "odo3 (7th)"];
+        return rollers_of(source, &names, |count, _| count);
+    }
+    let names =
+        ["time (1st)", "x (2nd)", "y (3rd)", "theta (4th)", "odo1 (5th)", "odo2 (6th)", "odo3 (7th)", "odo4 (8th)"];
+    rollers_of(source, &names, |count, wheel| if BACKWARD[wheel] { -count } else { count })
+}
+
+/// The same, with each count as it is ahead.
+fn rollers_of<const N: usize>(
+    source: Source,
+    names: &[&str; N],
+    ahead: fn(f64, usize) -> f64,
+) -> Result<Recording, DatasetError> {
+    const WHEELS_FROM: usize = 4;
+    let mut recording = Recording {
+        file: source.file.clone(),
+        columns: std::iter::once(names[0]).chain(names[WHEELS_FROM..].iter().copied()).map(str::to_owned).collect(),
+        counts: vec![Vec::new(); N - WHEELS_FROM],
+        per_cycle: true,
+        ..Recording::default()
+    };
+    headless(source, names, |line, cells| {
+        let sample = recording.time.len();
+        recording.lines.push(line);
+        recording.time.push(cells[0]);
+        for (wheel, (counts, count)) in recording.counts.iter_mut().zip(&cells[WHEELS_FROM..]).enumerate() {
+            counts.push(ahead(*count, wheel));
+        }
+        recording.reference.push(ReferencePose { sample, x: cells[1], y: cells[2], heading: Some(cells[3]) });
     })?;
     Ok(recording)
 }

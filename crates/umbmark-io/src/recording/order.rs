@@ -124,7 +124,7 @@ fn rearrange(recording: &mut Recording, order: &[usize]) {
     recording.marked.sort_by_key(|(sample, _)| *sample);
     recording.marked.dedup_by_key(|(sample, _)| *sample);
     let pick = |values: &[f64]| order.iter().map(|row| values[*row]).collect::<Vec<f64>>();
-    recording.counts = [pick(&recording.counts[0]), pick(&recording.counts[1])];
+    recording.counts = recording.counts.iter().map(|counts| pick(counts)).collect();
     recording.lines = order.iter().map(|row| recording.lines.of(*row)).collect();
     recording.time = pick(&recording.time);
 }

@@ -1629,6 +1629,9 @@ class LogFacts(Record, frozen=True):
         Defects that were corrected while it was read.
     length_m : float or None
         Length of the way by the ticks, in m; None without a nominal robot.
+    disagreement_m_per_m : float or None
+        What the wheels disagree on, in m for each m of way: slip that shows without a reference;
+        None where fewer than four wheels with rollers are counted.
     heading_rad : float or None
         Heading at the end by the ticks, in rad; None without a nominal robot.
     heading_off_rad : float or None
@@ -1654,6 +1657,7 @@ class LogFacts(Record, frozen=True):
     gaps: int
     mended: Mended
     length_m: float | None
+    disagreement_m_per_m: float | None
     heading_rad: float | None
     heading_off_rad: float | None
     wheels: WheelFacts | None

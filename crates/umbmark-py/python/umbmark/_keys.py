@@ -13,6 +13,8 @@ Drive: TypeAlias = Literal[
     "clapper",
     "ackermann",
     "tricycle",
+    "mecanum",
+    "omni3",
 ]
 Shape: TypeAlias = Literal[
     "square",
@@ -31,6 +33,7 @@ EffectName: TypeAlias = Literal[
     "encoder_skew",
     "encoder_sampling",
     "encoder_resolution",
+    "lost_cycles",
     "wheel_diameter_ratio",
     "wheelbase",
     "scale",
@@ -50,6 +53,13 @@ EffectName: TypeAlias = Literal[
     "steering_zero",
     "steering_gain",
     "understeer",
+    "side_diameter_ratio",
+    "diagonal_diameter_ratio",
+    "axle_diameter_ratio",
+    "front_diameter_ratio",
+    "rear_diameter_ratio",
+    "roller_scale",
+    "lateral_scale",
     "rear_truck",
     "link_length",
     "rotary_zero_difference",
@@ -129,6 +139,13 @@ class RobotKeys(TypedDict, total=False):
     diameter_difference: float | None
     axle_distance_m: float | None
     steering_zero_rad: float | None
+    wheel_distance_length_m: float | None
+    wheel_distance_width_m: float | None
+    wheel_diameter_1_m: float | None
+    wheel_diameter_2_m: float | None
+    wheel_diameter_3_m: float | None
+    wheel_diameter_4_m: float | None
+    wheel_distance_m: float | None
 
 
 class MotionKeys(TypedDict, total=False):

@@ -121,8 +121,8 @@ fn places(run: &ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Vec<Measur
 /// Mean unsigned travel of the wheels after each piece \[m\].
 pub(super) fn rolled(track: &Track) -> Vec<f64> {
     let mut sum = 0.0;
-    let after = track.travel().iter().map(|travel| {
-        sum += travel.rolled();
+    let after = track.travel().iter().zip(track.contexts()).map(|(travel, at)| {
+        sum += travel.rolled().max(at.aside.way.abs());
         sum
     });
     std::iter::once(0.0).chain(after).collect()

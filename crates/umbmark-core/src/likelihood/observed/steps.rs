@@ -20,13 +20,14 @@ const APART: (f64, f64) = (0.03, 0.05);
 /// Of some poses of a log, those between which the wheels rolled.
 pub(super) fn apart(log: &TickLog, robot: &Robot, poses: &[usize]) -> Vec<usize> {
     let (per_tick, wheelbase) = (robot.metres_per_tick(), robot.drive.wheelbase());
+    let ways = log.ways(robot);
     let (mut kept, mut way, mut turned, mut sample) = (Vec::new(), 0.0, 0.0, 0);
     for pose in poses {
         let until = log.reference[*pose].sample;
         while sample < until {
             let left = (log.left[sample + 1] - log.left[sample]) * per_tick.left;
             let right = (log.right[sample + 1] - log.right[sample]) * per_tick.right;
-            way += 0.5 * (left + right).abs();
+            way += ways[sample];
             turned += (right - left).abs() / wheelbase;
             sample += 1;
         }

@@ -15,13 +15,15 @@ const ROUNDING: f64 = 1e-9;
 struct Reading {
     duration: f64,
     forward: f64,
+    /// Of a drive that moves sideways by itself, to the left.
+    sideways: f64,
     rotation: f64,
 }
 
 impl Reading {
-    /// Speed \[m/s\] and turn rate \[rad/s\].
-    fn rates(&self) -> [f64; 2] {
-        [self.forward / self.duration, self.rotation / self.duration]
+    /// Speed ahead and to the left \[m/s\], and turn rate \[rad/s\].
+    fn rates(&self) -> [f64; 3] {
+        [self.forward / self.duration, self.sideways / self.duration, self.rotation / self.duration]
     }
 }
 
@@ -29,8 +31,8 @@ impl Reading {
 pub(super) struct Uneven<'a> {
     places: &'a [Pose2],
     times: &'a [f64],
-    /// Changes of speed and turn rate in each reading.
-    changes: Vec<[f64; 2]>,
+    /// Changes of the speeds and of the turn rate in each reading.
+    changes: Vec<[f64; 3]>,
     /// How far the robot is beside the place after each piece \[m\].
     beside: Vec<[f64; 2]>,
 }
@@ -45,18 +47,27 @@ impl<'a> Uneven<'a> {
             let Some(reading) = reading_of(at.time).and_then(|k| readings.get_mut(k)) else { continue };
             let (sine, cosine) = libm::sincos(0.5 * (pair[0].heading + pair[1].heading));
             reading.forward += cosine * (pair[1].x - pair[0].x) + sine * (pair[1].y - pair[0].y);
+            if at.aside.way != 0.0 {
+                reading.sideways += cosine * (pair[1].y - pair[0].y) - sine * (pair[1].x - pair[0].x);
+            }
             reading.rotation += pair[1].heading - pair[0].heading;
         }
-        let changes: Vec<[f64; 2]> = (0..readings.len()).map(|k| changes(&readings, k)).collect();
+        let changes: Vec<[f64; 3]> = (0..readings.len()).map(|k| changes(&readings, k)).collect();
         let mut beside = [0.0; 2];
         let mut all = vec![beside];
         for (at, pair) in track.contexts().iter().zip(places.windows(2)) {
             if let Some(k) = reading_of(at.time).filter(|k| *k < readings.len()) {
-                let (reading, [faster, turning]) = (&readings[k], changes[k]);
+                let (reading, [faster, sliding, turning]) = (&readings[k], changes[k]);
+                let part = (at.duration / reading.duration).min(1.0);
                 let aside = reading.duration * (reading.rotation * faster - reading.forward * turning) / 12.0;
-                let aside = aside * (at.duration / reading.duration).min(1.0);
+                let aside = aside * part;
                 let (sine, cosine) = libm::sincos(0.5 * (pair[0].heading + pair[1].heading));
                 beside = [beside[0] - sine * aside, beside[1] + cosine * aside];
+                if sliding != 0.0 || reading.sideways != 0.0 {
+                    let back =
+                        reading.duration * (reading.rotation * sliding - reading.sideways * turning) / 12.0 * part;
+                    beside = [beside[0] - cosine * back, beside[1] - sine * back];
+                }
             }
             all.push(beside);
         }
@@ -81,9 +92,13 @@ impl<'a> Uneven<'a> {
         let Some(k) = reading_at(self.times, time).filter(|k| *k < self.changes.len()) else { return [0.0; 3] };
         let duration = self.times[k + 1] - self.times[k];
         let share = (time - self.times[k]) / duration;
-        let [faster, turning] = self.changes[k].map(|change| 0.5 * share * (1.0 - share).max(0.0) * duration * change);
+        let [faster, sliding, turning] =
+            self.changes[k].map(|change| 0.5 * share * (1.0 - share).max(0.0) * duration * change);
         let (sine, cosine) = libm::sincos(self.places[moment.made].heading);
-        [-faster * cosine, -faster * sine, -turning]
+        if sliding == 0.0 {
+            return [-faster * cosine, -faster * sine, -turning];
+        }
+        [sliding * sine - faster * cosine, -faster * sine - sliding * cosine, -turning]
     }
 }
 
@@ -92,15 +107,15 @@ fn reading_at(times: &[f64], time: f64) -> Option<usize> {
     times.partition_point(|begun| *begun <= time + ROUNDING).checked_sub(1)
 }
 
-/// Changes of speed and turn rate in a reading, by the readings before and after it; none at the ends of a log.
-fn changes(readings: &[Reading], own: usize) -> [f64; 2] {
+/// Changes of the speeds and of the turn rate in a reading, by the readings before and after it; none at the ends of a log.
+fn changes(readings: &[Reading], own: usize) -> [f64; 3] {
     let (Some(before), Some(after)) = (own.checked_sub(1).map(|k| &readings[k]), readings.get(own + 1)) else {
-        return [0.0; 2];
+        return [0.0; 3];
     };
     let duration = readings[own].duration;
     let between = 0.5 * before.duration + duration + 0.5 * after.duration;
     let (from, to) = (before.rates(), after.rates());
-    [0, 1].map(|k| (to[k] - from[k]) * duration / between)
+    [0, 1, 2].map(|k| (to[k] - from[k]) * duration / between)
 }
 
 #[cfg(test)]

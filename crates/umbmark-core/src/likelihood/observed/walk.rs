@@ -13,8 +13,12 @@ pub(super) fn velocity(places: &[Pose2], tracked: &[Pose2], moments: &[Moment]) 
     for ((place, tracked), Moment { sight, .. }) in places.iter().zip(tracked).zip(moments) {
         let (sine, cosine) = libm::sincos(place.heading);
         let (x, y) = (tracked.x - place.x, tracked.y - place.y);
-        let rates =
+        let mut rates =
             [sight.speed * cosine - sight.turn_rate * y, sight.speed * sine + sight.turn_rate * x, sight.turn_rate];
+        if sight.speed_aside != 0.0 {
+            rates[0] -= sight.speed_aside * sine;
+            rates[1] += sight.speed_aside * cosine;
+        }
         for (total, rate) in sum.iter_mut().zip(rates) {
             *total += rate / places.len() as f64;
         }
@@ -28,18 +32,32 @@ pub(super) struct Walk {
     pub way: Vec<f64>,
     pub turned: Vec<f64>,
     pub rolled: Vec<f64>,
+    /// Direction of motion in each piece from the heading \[rad\]; 0 of a drive that does not move sideways.
+    courses: Vec<f64>,
 }
 
 impl Walk {
     pub fn new(track: &Track, chain: &Chain<f64>) -> Walk {
         let (mut pose, mut way, mut turned, mut rolled) = (track.start(chain), 0.0, 0.0, 0.0);
-        let mut walk = Walk { places: vec![pose], way: vec![way], turned: vec![turned], rolled: vec![rolled] };
+        let mut walk = Walk {
+            places: vec![pose],
+            way: vec![way],
+            turned: vec![turned],
+            rolled: vec![rolled],
+            courses: Vec::new(),
+        };
         for (travel, at) in track.travel().iter().zip(track.contexts()) {
             let motion = chain.displacement(&at.at_pose(&pose), travel);
             pose.advance(&motion);
-            way += motion.forward.abs();
+            let (mut gone, mut course) = (motion.forward.abs(), 0.0);
+            if at.aside.way != 0.0 {
+                gone = libm::hypot(motion.forward, motion.sideways);
+                course = libm::atan2(motion.sideways, motion.forward);
+            }
+            way += gone;
+            walk.courses.push(course);
             turned += motion.rotation.abs();
-            rolled += travel.rolled();
+            rolled += travel.rolled().max(at.aside.way.abs());
             walk.places.push(pose);
             walk.way.push(way);
             walk.turned.push(turned);
@@ -79,7 +97,7 @@ impl Walk {
             let outer = [g[0] * g[0], g[1] * g[0], g[1] * g[1], g[0], g[1], 1.0];
             let of = |sum: &[f64]| part * (sum[piece + 1] - sum[piece]);
             let (way, turned, rolled) = (of(&self.way), of(&self.turned), of(&self.rolled));
-            let (sine, cosine) = libm::sincos(0.5 * (a.heading + b.heading));
+            let (sine, cosine) = libm::sincos(0.5 * (a.heading + b.heading) + self.courses[piece]);
             for (sum, product) in growth.forward.iter_mut().zip([cosine * cosine, cosine * sine, sine * sine]) {
                 *sum += rolled * product;
             }

@@ -73,8 +73,7 @@ pub(super) fn look(file: &Path, _: &Topics, words: &Words) -> Result<LogContents
         Ok(())
     })?;
     let has = |name: &str| header.iter().any(|column| column == name);
-    let named =
-        |kind: &&DriveKind| kind.has_tick_logs() && kind.counters().iter().all(|of| has(&format!("ticks_{of}")));
+    let named = |kind: &&DriveKind| kind.has_tick_logs() && kind.columns().iter().all(|of| has(&format!("ticks_{of}")));
     let drive = DriveKind::ALL.iter().find(named).copied().unwrap_or_default();
     let mut notes = Vec::new();
     let recording = match parse_tick_log(Source::open(file)?, drive, &mut notes) {
@@ -106,7 +105,7 @@ fn is_of_header(problem: &LineProblem) -> bool {
 
 /// What a column is used for.
 fn role(recording: &Recording, name: &str) -> Option<&'static str> {
-    let [time, wheels @ ..] = &recording.columns;
+    let [time, wheels @ ..] = &recording.columns[..] else { return None };
     if name == time {
         return Some("time");
     }
@@ -129,7 +128,7 @@ fn reference(recording: &Recording) -> Option<ReferenceFound> {
 }
 
 fn wheels(recording: Recording, drive: DriveKind, words: &Words) -> Result<WheelsFound, String> {
-    let [_, wheels @ ..] = &recording.columns;
+    let wheels = recording.columns.get(1..).unwrap_or_default();
     let (source, readings) = (wheels.join(", "), recording.time.len());
     let rate = usual_rate(&recording.time).ok_or("there are fewer than two rows with a time of their own")?;
     let counter_bits = rolls_over(recording, words)?;

@@ -29,7 +29,7 @@ pub(crate) enum ReferenceColumns {
 /// The columns of a log.
 struct LogColumns {
     time: Column,
-    counts: [Column; 2],
+    counts: Vec<Column>,
     reference: Option<ReferenceColumns>,
     steps: Option<[Column; 3]>,
     gyro: Option<Column>,
@@ -58,15 +58,17 @@ pub(crate) fn parse_tick_log(
 impl LogColumns {
     fn find(sheet: &Sheet, kind: DriveKind, warnings: &mut Vec<String>) -> Result<LogColumns, DatasetError> {
         let mut columns = Columns::of(sheet);
-        let [first, second] = kind.counters().map(|counter| format!("ticks_{counter}"));
+        let counters: Vec<String> = kind.columns().iter().map(|counter| format!("ticks_{counter}")).collect();
         let of = if kind == DriveKind::default() {
             String::new()
         } else {
             format!(" of a robot with drive = \"{}\"", kind.name())
         };
-        let needs = format!("a tick log{of} needs t_s, {first} and {second}");
+        let (last, others) = counters.split_last().map_or(("", &[][..]), |(last, others)| (last.as_str(), others));
+        let needs = format!("a tick log{of} needs t_s, {} and {last}", others.join(", "));
         let time = columns.need("t", Time, &needs)?;
-        let counts = [columns.need(&first, Bare, &needs)?, columns.need(&second, Bare, &needs)?];
+        let counts =
+            counters.iter().map(|counter| columns.need(counter, Bare, &needs)).collect::<Result<Vec<_>, _>>()?;
         let reference = ReferenceColumns::find(&mut columns)?;
         // Beside a range, it names a mark that was sighted and not one that the robot stands on.
         let mark = if columns.given(&["range"]) { None } else { columns.find("mark", Bare)? };
@@ -88,11 +90,13 @@ impl LogColumns {
 
     /// The recording of a file, before its first row.
     fn recording(&self, file: &str) -> Recording {
-        let columns = [&self.time, &self.counts[0], &self.counts[1]].map(|column| column.name.clone());
+        let columns: Vec<String> =
+            [&self.time].into_iter().chain(&self.counts).map(|column| column.name.clone()).collect();
+        let counts = vec![Vec::new(); self.counts.len()];
         let rates = self.gyro.is_some();
         let headings_only = rates || matches!(self.reference, Some(ReferenceColumns::Headings(_)));
         let relative = rates || self.steps.is_some();
-        Recording { file: file.to_owned(), columns, relative, headings_only, rates, ..Recording::default() }
+        Recording { file: file.to_owned(), columns, counts, relative, headings_only, rates, ..Recording::default() }
     }
 
     fn read(&self, row: &Row, recording: &mut Recording) -> Result<(), DatasetError> {
@@ -216,10 +220,15 @@ impl ReferenceColumns {
 /// shows them, rolled over where it does.
 pub(crate) fn tick_log_text(log: &TickLog, robot: &Robot) -> Vec<u8> {
     let (encoder, kind) = (&robot.encoder, robot.drive.kind());
-    let [first, second] = encoder.wiring().columns(robot.counters([&log.left, &log.right]));
+    let ticks = [&log.left[..], &log.right[..]];
+    let counted = match (kind.moves_sideways(), log.rollers.is_empty()) {
+        (true, true) => robot.counters_of_rollers(ticks),
+        (true, false) => log.rollers.clone(),
+        (false, _) => encoder.wiring().columns(robot.counters(ticks)).to_vec(),
+    };
     let shown = |ticks: f64| encoder.reading(ticks.floor() as i64) as f64 + (ticks - ticks.floor());
     let referenced = !log.reference.is_empty();
-    let counters = kind.counters().map(|counter| format!("ticks_{counter}"));
+    let counters: Vec<String> = kind.columns().iter().map(|counter| format!("ticks_{counter}")).collect();
     let mut text = CsvText::behind("");
     let columns = ["t_s"].into_iter().chain(counters.iter().map(String::as_str));
     let told = if log.headings_only { &REFERENCE[2..] } else { &REFERENCE[..] };
@@ -227,8 +236,7 @@ pub(crate) fn tick_log_text(log: &TickLog, robot: &Robot) -> Vec<u8> {
     let mut references = log.reference.iter().peekable();
     for (sample, time) in log.time.iter().enumerate() {
         text.decimal(*time);
-        text.cell(shown(first[sample]));
-        text.cell(shown(second[sample]));
+        counted.iter().for_each(|counts| text.cell(shown(counts[sample])));
         if referenced {
             let pose = references.next_if(|pose| pose.sample == sample);
             if !log.headings_only {

@@ -142,12 +142,14 @@ impl Wheels {
             relative: false,
             headings_only: false,
             rates: false,
+            clock_excess: 0.0,
             file: file.to_owned(),
             columns: [clock.name().to_owned(), names[0].clone(), names[1].clone()]
-                .map(|name| format!("{topic} {name}")),
+                .map(|name| format!("{topic} {name}"))
+                .to_vec(),
             lines: (1..=self.times.len()).collect(),
             time: self.times.iter().map(|times| clock.seconds(times)).collect(),
-            counts: self.values,
+            counts: self.values.into(),
             per_cycle: false,
             angle_of_row: false,
             reference: Vec::new(),

@@ -88,7 +88,7 @@ pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<TrackStep> {
             // A block may begin or end within a piece.
             let (begun, ended) = ((made - piece as f64).max(0.0), (until - piece as f64).min(1.0));
             let share = (ended - begun).max(0.0);
-            let (travel, at) = (&track.travel()[piece].scaled(share), &track.contexts()[piece]);
+            let (travel, at) = (&track.travel()[piece].scaled(share), &track.contexts()[piece].part(share));
             if at.stands() {
                 pose = pose.moved(&chain.displacement(&at.at_pose(&pose), travel));
                 continue;

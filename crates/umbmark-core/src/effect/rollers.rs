@@ -1,0 +1,35 @@
+//! What laws of wheels with rollers have in common: the motion of the base as ways of its wheels.
+
+use super::Context;
+use crate::geometry::{Displacement2, Real};
+
+/// A motion in metres: ahead, to the left, and along the circle on which the axle's wheels stand.
+pub(super) struct Ways<T> {
+    pub ahead: T,
+    pub left: T,
+    pub round: T,
+}
+
+impl<T: Real> Ways<T> {
+    #[inline(always)]
+    pub fn of(at: &Context<T>, motion: &Displacement2<T>) -> Ways<T> {
+        Ways { ahead: motion.forward, left: motion.sideways, round: motion.rotation * (0.5 * at.wheelbase) }
+    }
+
+    /// Adds these ways to a motion.
+    #[inline(always)]
+    pub fn add_to(self, at: &Context<T>, motion: &mut Displacement2<T>) {
+        motion.forward += self.ahead;
+        motion.sideways += self.left;
+        // Where nothing is known of the robot, nothing turns it.
+        if at.wheelbase > 0.0 {
+            motion.rotation += self.round / (0.5 * at.wheelbase);
+        }
+    }
+}
+
+/// How much two sizes of this ratio differ from their mean, as a share of it: (r - 1)/(r + 1).
+#[inline(always)]
+pub(super) fn share<T: Real>(ratio: T) -> T {
+    (ratio - 1.0) / (ratio + 1.0)
+}
