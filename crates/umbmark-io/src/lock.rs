@@ -22,6 +22,16 @@ pub struct Held {
     pub process: Option<u32>,
 }
 
+/// Why a lock is not taken.
+enum Refused {
+    /// The folder takes no file.
+    Unopened,
+    /// Another process has it.
+    Held(File),
+    /// The file system knows no locks.
+    Unknown,
+}
+
 impl Lock {
     /// The lock of a file; none of a device or a pipe, and none where the folder takes no file, which writing it says better.
     pub fn of(file: &Path) -> Result<Option<Lock>, Held> {
@@ -33,23 +43,30 @@ impl Lock {
         let path = PathBuf::from(path);
         // A process that ends takes its file away: what was locked may be gone from the folder by then.
         for _ in 0..100 {
-            let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
-            let Ok(mut file) = opened else { return Ok(None) };
-            match Unfinished::begin(|| file.try_lock().map(|()| &path), |path| path) {
-                Ok((_, _unfinished)) if is_at(&file, &path) => {
+            // A process that is told to end meanwhile waits for this, and takes the file away.
+            let taken = || {
+                let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
+                let file = opened.map_err(|_| Refused::Unopened)?;
+                match file.try_lock() {
+                    Ok(()) => Ok((file, &path)),
+                    Err(TryLockError::WouldBlock) => Err(Refused::Held(file)),
+                    Err(TryLockError::Error(_)) => Err(Refused::Unknown),
+                }
+            };
+            match Unfinished::begin(taken, |(_, path)| path) {
+                Ok(((mut file, path), _unfinished)) if is_at(&file, path) => {
                     let said = file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id()));
                     // Who holds it is a courtesy.
                     drop(said);
-                    return Ok(Some(Lock { file, path, _unfinished }));
+                    return Ok(Some(Lock { file, path: path.clone(), _unfinished }));
                 }
                 Ok(_) => {}
-                Err(TryLockError::WouldBlock) => {
+                Err(Refused::Held(mut file)) => {
                     let mut text = String::new();
                     let read = file.rewind().and_then(|()| file.read_to_string(&mut text));
                     return Err(Held { process: read.ok().and_then(|_| text.trim().parse().ok()) });
                 }
-                // Some file systems know no locks.
-                Err(TryLockError::Error(_)) => return Ok(None),
+                Err(Refused::Unopened | Refused::Unknown) => return Ok(None),
             }
         }
         Ok(None)

@@ -272,6 +272,9 @@ class Jump(Record, frozen=True):
     standard_deviations : float or None
         Size of the jump, in standard deviations of the motion from pose to pose; None where that is
         not known.
+    unrecorded_s : float or None
+        How long the log has no rows within it, in s: the way of the wheels is not known then; None
+        where rows are as close as usual.
     """
 
     run: str
@@ -280,6 +283,7 @@ class Jump(Record, frozen=True):
     moved_m: float
     turned_rad: float | None
     standard_deviations: float | None
+    unrecorded_s: float | None
 
 
 class WrongPose(Record, frozen=True):
