@@ -6,7 +6,7 @@ use umbmark_core::drive::{DifferentialDrive, Encoder, Robot};
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::{self, Direction, SpeedProfile};
 use umbmark_core::random::Stream;
-use umbmark_io::{DatasetError, Existing, template, write_template};
+use umbmark_io::{DatasetError, Existing, Layout, template, write_template};
 
 /// A dataset of awkward numbers; some runs without log, without return, without heading, without direction.
 fn awkward(seed: u64) -> Dataset {
@@ -187,4 +187,21 @@ fn written_folders_have_the_rights_of_other_folders() {
     std::fs::create_dir(&other).unwrap();
     let mode = |path: &Path| std::fs::metadata(path).unwrap().permissions().mode();
     assert_eq!(mode(&ours), mode(&other));
+}
+
+/// A table has no column for them.
+#[test]
+fn durations_by_the_clock_of_the_reference_are_said_to_be_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut data = awkward(2);
+    let lost = |data: &Dataset, name: &str| {
+        Layout::named("csv").unwrap().write(data, folder.path().join(name), Existing::Keep).unwrap()
+    };
+    assert_eq!(lost(&data, "as_it_was"), Vec::<String>::new());
+    for run in data.runs.iter_mut().filter(|run| run.number == 2) {
+        run.log.iter_mut().for_each(|log| log.clock_excess = 0.11);
+    }
+    let count = data.runs.iter().filter(|run| run.log.as_ref().is_some_and(|log| log.clock_excess > 0.0)).count();
+    let said = format!("{count} durations by the reference's clock: lost_cycles cannot be told from the copy");
+    assert_eq!(lost(&data, "timed"), [said]);
 }

@@ -177,16 +177,22 @@ pub(crate) fn robot_beside(folder: &Path) -> Option<PathBuf> {
 fn write(data: &Dataset, folder: &Path, existing: Existing) -> Result<Vec<String>, DatasetError> {
     let between = |log: &TickLog| log.left.iter().chain(&log.right).any(|ticks| ticks.fract() != 0.0);
     let robot = data.nominal_robot()?;
+    let mut lost = Vec::new();
+    let timed = super::logs(data).filter(|(_, log)| log.clock_excess != 0.0).count();
+    if timed > 0 {
+        lost.push(format!("{timed} durations by the reference's clock: lost_cycles cannot be told from the copy"));
+    }
     let encoder = &robot.encoder;
     if encoder.counter_bits().is_none() || !super::logs(data).any(|(_, log)| between(log)) {
-        return save(data, folder, existing).map(|()| Vec::new());
+        return save(data, folder, existing).map(|()| lost);
     }
     let mut unrolled = data.clone();
     let mut robot = robot.clone();
     robot.encoder = encoder.without_roll_over();
     unrolled.robot = Some(robot);
     save(&unrolled, folder, existing)?;
-    Ok(vec!["counter_bits: counts were put between readings, so all are written with their roll-overs undone".into()])
+    lost.push("counter_bits: counts were put between readings, so all are written with their roll-overs undone".into());
+    Ok(lost)
 }
 
 /// How the logs of a dataset are written.
