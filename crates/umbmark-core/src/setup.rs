@@ -41,7 +41,7 @@ use agreement::{Agreement, Beside, Reading};
 use clock::Late;
 use disturbances::Found;
 use edges::Sighting;
-use windows::{Rolled, Window, windows};
+use windows::{Rolled, Window, usual_step, windows};
 
 pub use counts_factor::CountsFactor;
 pub use faults::Fault;
@@ -393,6 +393,8 @@ fn told(mut run: RunSetup, seen: &Seen, found: Found) -> RunSetup {
     let wrong =
         |w: disturbances::Wrong| WrongPose { pose: w.pose, time: time(w.pose), moved: w.moved, turned: w.turned };
     run.wrong = found.wrong.into_iter().map(wrong).collect();
+    let sample = |pose: usize| seen.log.reference[pose].sample;
+    let usual = usual_step(&seen.log.time);
     let jump = |leap: disturbances::Leap| Jump {
         from: leap.from,
         pose: leap.pose,
@@ -401,21 +403,16 @@ fn told(mut run: RunSetup, seen: &Seen, found: Found) -> RunSetup {
         moved: leap.moved,
         turned: leap.turned,
         deviations: leap.deviations,
-        unrecorded: unrecorded(
-            &seen.log.time,
-            seen.log.reference[leap.from].sample,
-            seen.log.reference[leap.pose].sample,
-        ),
+        unrecorded: unrecorded(&seen.log.time[sample(leap.from)..=sample(leap.pose)], usual),
     };
     run.jumps = found.jumps.into_iter().map(jump).collect();
     run.delay = seen.late.measured();
     run
 }
 
-/// The longest time without a row from one sample to another \[s\], if it is longer than usual.
-fn unrecorded(time: &[f64], from: usize, to: usize) -> Option<f64> {
-    let usual = robust::median(time.windows(2).map(|pair| pair[1] - pair[0]));
-    let longest = time[from..=to].windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+/// The longest time between two rows that follow each other \[s\], if it is much longer than usual.
+fn unrecorded(time: &[f64], usual: f64) -> Option<f64> {
+    let longest = time.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     (longest > GAP * usual).then_some(longest)
 }
 
@@ -429,6 +426,7 @@ fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting>
     let (mut pose, mut rolled, mut now) = (Pose2::IDENTITY, [0.0; 2], None);
     // Where positions and headings are measured, their own differences show whether the way is lost.
     let asked = !with_heading || seen.log.headings_only && seen.log.relative;
+    let usual = usual_step(&seen.log.time);
     let mut before: Option<(usize, f64)> = None;
     let mut samples = seen.log.time.iter().copied().peekable();
     let mut drive_to = |time: f64| {
@@ -452,17 +450,18 @@ fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting>
         }
         let (pose, [way, turned]) = drive_to(taken);
         let expected = pose.compose(&body);
+        let rolled = way + 0.5 * wheelbase * turned;
         let blind = |(sample, rolled_then): (usize, f64)| {
-            unrecorded(&seen.log.time, sample, reference.sample).is_some_and(|seconds| seconds > BLIND.0)
-                && way + 0.5 * wheelbase * turned - rolled_then > BLIND.1
+            let missing = unrecorded(&seen.log.time[sample..=reference.sample], usual);
+            missing.is_some_and(|seconds| seconds > BLIND.0) && rolled - rolled_then > BLIND.1
         };
         let after_gap = asked && before.is_some_and(blind);
-        before = Some((reference.sample, way + 0.5 * wheelbase * turned));
+        before = Some((reference.sample, rolled));
         Sighting {
             time: stamp,
             way,
             turned,
-            rolled: way + 0.5 * wheelbase * turned,
+            rolled,
             after_gap,
             expected,
             measured: if seen.log.headings_only {
