@@ -3,6 +3,7 @@
 //! The driver gives the twist of the body. The rim of each wheel moves so that the lowest roller rolls across its own axis only; its counter
 //! counts that by the wheel's true size. What is logged goes through files, as other people's does.
 
+use crate::steered::Chance;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use std::fmt::Write;
 use umbmark_core::diagnose::{Options, Verdict};
@@ -22,19 +23,6 @@ impl Wheel {
         let place = [ahead - turn * self.at[1], left + turn * self.at[0]];
         let (sine, cosine) = self.axis.sin_cos();
         (place[0] * cosine + place[1] * sine) / (self.rolls - self.axis).cos()
-    }
-}
-
-/// Noise of the reference: the sum of twelve numbers of a linear congruential generator.
-struct Chance(u64);
-
-impl Chance {
-    fn normal(&mut self) -> f64 {
-        let mut uniform = || {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        };
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
     }
 }
 

@@ -1,7 +1,7 @@
 //! Diameters of the front wheels of a mecanum drive beside those of the rear ones.
 
 use super::rollers::{Ways, share};
-use super::words::percent;
+use super::words::{either, percent};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
@@ -35,7 +35,7 @@ impl Effect for AxleDiameterRatio {
     const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Mecanum);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
-        let larger = if p[0] < 1.0 { "smaller" } else { "larger" };
+        let larger = either(p[0] - 1.0, "larger", "smaller");
         format!("The front wheels are {} {larger} than the rear ones.", percent(p[0] - 1.0))
     }
 

@@ -1,12 +1,10 @@
 //! Diameters of the two front wheels of a base on three omni wheels.
 
-use super::rollers::{Ways, share};
-use super::words::{mm, percent};
+use super::rollers::{self, Ways, share};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-use std::f64::consts::FRAC_1_SQRT_2;
 
 /// The ratio of the front left wheel's diameter to the front right one's; their mean stays.
 struct FrontDiameterRatio;
@@ -14,7 +12,7 @@ struct FrontDiameterRatio;
 pub(super) static EFFECT: Entry = Entry::of::<FrontDiameterRatio>().body::<FrontDiameterRatio>();
 
 /// 1/√3.
-const THIRD_ROOT: f64 = FRAC_1_SQRT_2 * 0.816_496_580_927_726;
+const THIRD_ROOT: f64 = 0.577_350_269_189_625_8;
 
 impl Effect for FrontDiameterRatio {
     const ABOUT: About = About {
@@ -41,14 +39,7 @@ impl Effect for FrontDiameterRatio {
     const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Omni3);
 
     fn means(p: &[f64], robot: &Robot) -> String {
-        let (e, mean) = (share(p[0]), robot.drive.wheel_diameter_left());
-        format!(
-            "The front left wheel is {} {} than the front right one: {} and {} in diameter.",
-            percent(p[0] - 1.0),
-            if p[0] < 1.0 { "smaller" } else { "larger" },
-            mm(mean * (1.0 + e)),
-            mm(mean * (1.0 - e))
-        )
+        rollers::differ("front left wheel is", "front right one", p[0], robot)
     }
 
     fn varies(p: &[f64]) -> bool {

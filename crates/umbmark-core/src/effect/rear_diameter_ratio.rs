@@ -1,7 +1,7 @@
 //! Diameter of the rear wheel of a base on three omni wheels.
 
 use super::rollers::Ways;
-use super::words::percent;
+use super::words::{either, percent};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
@@ -36,7 +36,7 @@ impl Effect for RearDiameterRatio {
     const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Omni3);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
-        let larger = if p[0] < 1.0 { "smaller" } else { "larger" };
+        let larger = either(p[0] - 1.0, "larger", "smaller");
         format!("The rear wheel is {} {larger} than the front ones.", percent(p[0] - 1.0))
     }
 

@@ -1,6 +1,8 @@
 //! What laws of wheels with rollers have in common: the motion of the base as ways of its wheels.
 
 use super::Context;
+use super::words::{either, mm, percent};
+use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 
 /// A motion in metres: ahead, to the left, and along the circle on which the axle's wheels stand.
@@ -32,4 +34,16 @@ impl<T: Real> Ways<T> {
 #[inline(always)]
 pub(super) fn share<T: Real>(ratio: T) -> T {
     (ratio - 1.0) / (ratio + 1.0)
+}
+
+/// That some wheels of this ratio to others are larger or smaller, and both diameters.
+pub(super) fn differ(whose: &str, than: &str, ratio: f64, robot: &Robot) -> String {
+    let (off, mean) = (share(ratio), robot.drive.wheel_diameter_left());
+    format!(
+        "The {whose} {} {} than the {than}: {} and {} in diameter.",
+        percent(ratio - 1.0),
+        either(ratio - 1.0, "larger", "smaller"),
+        mm(mean * (1.0 + off)),
+        mm(mean * (1.0 - off))
+    )
 }

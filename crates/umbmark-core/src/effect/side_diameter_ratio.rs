@@ -1,7 +1,6 @@
 //! Diameters of the right wheels of a mecanum drive beside those of the left ones.
 
-use super::rollers::{Ways, share};
-use super::words::{mm, percent};
+use super::rollers::{self, Ways, share};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
@@ -35,14 +34,7 @@ impl Effect for SideDiameterRatio {
     const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Mecanum);
 
     fn means(p: &[f64], robot: &Robot) -> String {
-        let (e, mean) = (share(p[0]), robot.drive.wheel_diameter_left());
-        format!(
-            "The right wheels are {} {} than the left ones: {} and {} in diameter.",
-            percent(p[0] - 1.0),
-            if p[0] < 1.0 { "smaller" } else { "larger" },
-            mm(mean * (1.0 + e)),
-            mm(mean * (1.0 - e))
-        )
+        rollers::differ("right wheels are", "left ones", p[0], robot)
     }
 
     fn varies(p: &[f64]) -> bool {
