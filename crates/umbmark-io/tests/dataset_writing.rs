@@ -205,3 +205,23 @@ fn durations_by_the_clock_of_the_reference_are_said_to_be_lost() {
     let said = format!("{count} durations by the reference's clock: lost_cycles cannot be told from the copy");
     assert_eq!(lost(&data, "timed"), [said]);
 }
+
+/// Where a counter shows parts of a revolution, wheels roll back by less than a count.
+#[test]
+fn counts_a_little_below_zero_are_read_back_to_the_last_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut data = awkward(2);
+    for log in data.runs.iter_mut().filter_map(|run| run.log.as_mut()) {
+        log.left.iter_mut().for_each(|ticks| *ticks *= -1e-6 / 3.0);
+    }
+    umbmark_io::save(&data, folder.path(), Existing::Replace).unwrap();
+    let read = umbmark_io::load(folder.path()).unwrap();
+    let lefts = |data: &Dataset| {
+        let logs = data.runs.iter().filter_map(|run| run.log.as_ref());
+        logs.map(|log| log.left.clone()).collect::<Vec<_>>()
+    };
+    let (mut read, mut written) = (lefts(&read), lefts(&data));
+    read.sort_by(|a, b| a[299].total_cmp(&b[299]));
+    written.sort_by(|a, b| a[299].total_cmp(&b[299]));
+    assert_eq!(read, written);
+}

@@ -226,7 +226,11 @@ pub(crate) fn tick_log_text(log: &TickLog, robot: &Robot) -> Vec<u8> {
         (true, false) => log.rollers.clone(),
         (false, _) => encoder.wiring().columns(robot.counters(ticks)).to_vec(),
     };
-    let shown = |ticks: f64| encoder.reading(ticks.floor() as i64) as f64 + (ticks - ticks.floor());
+    // Only a counter of some bits cuts the whole counts off, and rounds what is between two of them.
+    let shown = |ticks: f64| match encoder.counter_bits() {
+        Some(_) => encoder.reading(ticks.floor() as i64) as f64 + (ticks - ticks.floor()),
+        None => ticks,
+    };
     let referenced = !log.reference.is_empty();
     let counters: Vec<String> = kind.columns().iter().map(|counter| format!("ticks_{counter}")).collect();
     let mut text = CsvText::behind("");
