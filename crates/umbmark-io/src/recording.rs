@@ -1,13 +1,15 @@
 //! Raw counts as a reader found them, and how they become a [`TickLog`].
 
+mod held;
 mod order;
 
 use super::error::{At, DatasetError, LineProblem};
 use super::lines::Lines;
+use super::track_rows::TrackRows;
 use umbmark_core::dataset::{Mended, ReferencePose, TickLog};
 use umbmark_core::drive::{DriveKind, Robot, roll_over};
 use umbmark_core::prose::counted;
-use umbmark_core::run::headings_of;
+use umbmark_core::run::{headings_of, place};
 
 /// No wheel of a robot rolls faster \[m/s\].
 const FASTEST: f64 = 100.0;
@@ -36,6 +38,10 @@ pub(super) struct Recording {
     /// Whether the angle of a row is that of all that was driven since the row before, rather than that at its time.
     pub angle_of_row: bool,
     pub reference: Vec<ReferencePose>,
+    /// Poses in rows of their own, without counts.
+    pub apart: TrackRows,
+    /// Rows with neither counts nor a pose.
+    pub empty: usize,
     /// Whether these poses are sums of the steps of a reference that tells motion only.
     pub relative: bool,
     /// Whether they tell headings only.
@@ -60,6 +66,8 @@ impl Default for Recording {
             per_cycle: false,
             angle_of_row: false,
             reference: Vec::new(),
+            apart: TrackRows::default(),
+            empty: 0,
             relative: false,
             headings_only: false,
             rates: false,
@@ -85,6 +93,12 @@ impl Recording {
         }
         let mut mended = Mended::default();
         order::put_in_order(&mut self, &mut mended, warnings)?;
+        held::set_apart(&mut self, warnings);
+        let apart = self.poses_apart(warnings)?;
+        if self.empty > 0 {
+            let rows = counted(self.empty, "row");
+            warnings.push(format!("{}: {rows} with neither counts nor a pose: left out", self.file));
+        }
         self.add_up_rates();
         if self.per_cycle {
             self.add_up();
@@ -126,8 +140,44 @@ impl Recording {
         let (time, reference, relative, headings_only) = (self.time, self.reference, self.relative, self.headings_only);
         let clock_excess = self.clock_excess;
         let counts = TickLog { left, right, rollers, clock_excess, mended, ..TickLog::default() };
-        let log = TickLog { time, reference, relative, headings_only, ..counts };
+        let mut log = TickLog { time, reference, relative, headings_only, ..counts };
+        if let Some(apart) = apart {
+            let outside = place(&mut log, &apart.time, &apart.poses);
+            if outside > 0 {
+                let poses = counted(outside, "pose");
+                let file = &self.file;
+                warnings.push(format!("{file}: {poses} in a gap of the counts, or outside of them: left out"));
+            }
+        }
         Ok((log, self.marked))
+    }
+
+    /// All poses of a log in which some have rows of their own, in the order of time. Those are no rows of the counters then.
+    fn poses_apart(&mut self, warnings: &mut Vec<String>) -> Result<Option<TrackRows>, DatasetError> {
+        if self.apart.time.is_empty() {
+            return Ok(None);
+        }
+        let mut apart = std::mem::take(&mut self.apart);
+        // A pose beside counts stands first, and stays where another has its time.
+        let own = std::mem::take(&mut self.reference);
+        apart.put_in_order(warnings)?;
+        let mut all = TrackRows { rates: apart.rates, ..TrackRows::default() };
+        let mut own = own.iter().peekable();
+        for (row, time) in apart.time.iter().enumerate() {
+            while let Some(pose) = own.next_if(|pose| self.time[pose.sample] <= *time) {
+                all.push(self.lines.of(pose.sample), self.time[pose.sample], (pose.x, pose.y, pose.heading));
+            }
+            if all.time.last() != Some(time) {
+                all.push(apart.lines.of(row), *time, apart.poses[row]);
+            }
+        }
+        for pose in own {
+            all.push(self.lines.of(pose.sample), self.time[pose.sample], (pose.x, pose.y, pose.heading));
+        }
+        if all.rates {
+            all.count_turns();
+        }
+        Ok(Some(all))
     }
 
     /// Makes headings of the rates of a gyro.

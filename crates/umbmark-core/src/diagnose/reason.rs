@@ -1,8 +1,8 @@
 //! Why the verdict is not "explained" although no further effect is certified.
 
 use super::remains::{Remains, Repeating};
-use super::tracks::OddRun;
 use super::tracks::repeats::Repeated;
+use super::tracks::{OddRun, Unequal};
 use crate::setup::{Fault, Suspicion};
 
 /// One reason.
@@ -114,6 +114,8 @@ pub enum Reason {
     },
     /// One run is unlike the others.
     OddRun(OddRun),
+    /// A first effect differs from run to run.
+    RunsDiffer(Unequal),
     /// The data are in doubt.
     Data(Suspicion),
 }
@@ -225,6 +227,7 @@ impl Reason {
                 100.0 * share
             ),
             Reason::OddRun(odd) => odd.sentence(),
+            Reason::RunsDiffer(unequal) => unequal.sentence(),
             Reason::Data(suspicion) => suspicion.sentence(),
         }
     }

@@ -38,6 +38,7 @@ mod search;
 mod significance;
 mod smooth;
 mod suggestion;
+mod unequal;
 mod varying;
 mod wander;
 
@@ -63,6 +64,7 @@ pub use repeats::{Repeated, UnlistedLaw, what_repeats};
 pub(crate) use search::{Added, Found, Search, Wanted, search};
 pub(crate) use significance::p_of_own;
 pub use suggestion::Suggestion;
+pub use unequal::Unequal;
 
 /// Maximum number of classes that a diagnosis names.
 const MAX_CLASSES: usize = 3;

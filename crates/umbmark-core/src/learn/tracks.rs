@@ -201,7 +201,9 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         let of_laws = |reason: &Reason| matches!(reason, Reason::Repeats(_));
         // What repeats with the likeliest values is in the data, whichever values are written; by how much is told in per cent.
         let examined = std::mem::replace(&mut reasons, doubts);
-        reasons.extend(examined.iter().filter(|reason| matches!(reason, Reason::OddRun(_))).cloned());
+        reasons.extend(
+            examined.iter().filter(|reason| matches!(reason, Reason::OddRun(_) | Reason::RunsDiffer(_))).cloned(),
+        );
         let examined = examined.into_iter().find(of_laws);
         if let Some(Reason::Repeats(mut repeated)) = examined.filter(|_| !reasons.iter().any(of_laws)) {
             repeated.law.left_out = [f64::NAN; 2];

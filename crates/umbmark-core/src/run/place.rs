@@ -2,6 +2,7 @@
 
 use super::{ReferencePose, TickLog};
 use crate::geometry::wrap;
+use std::mem::take;
 
 /// x, y \[m\], and the heading \[rad\] where it was measured.
 pub type PoseRow = (f64, f64, Option<f64>);
@@ -17,7 +18,15 @@ const SHORT: f64 = 0.1;
 /// poses before and after it.
 pub fn place(log: &mut TickLog, times: &[f64], poses: &[PoseRow]) -> usize {
     let longest = (GAP * usual_step(&log.time)).max(SHORT);
-    let old = std::mem::take(log);
+    // What else is known of the log stays.
+    let old = TickLog {
+        time: take(&mut log.time),
+        left: take(&mut log.left),
+        right: take(&mut log.right),
+        rollers: take(&mut log.rollers),
+        ..TickLog::default()
+    };
+    log.reference.clear();
     let start = old.time.first().and_then(|first| start_pose(times, poses, *first));
     let (mut next, mut dropped) = (0, 0);
     let mut take_until = |log: &mut TickLog, time: f64| {

@@ -3,6 +3,7 @@
 use super::off::Off;
 use super::others::Other;
 use crate::calibrate::{self, Correction, Method};
+use crate::diagnose::Reason;
 use crate::effect::Model;
 use crate::evidence::Estimate;
 use crate::learn::Learnt;
@@ -129,6 +130,13 @@ fn first<'a>(learnt: &'a Learnt, others: &[Other]) -> First<'a> {
     for other in others {
         let off = DVector::from_iterator(first.shown.len(), first.shown.iter().map(|(which, _)| other.off[*which]));
         first.covariance.ger(other.likelihood, &off, &off, 1.0);
+    }
+    // Where a value differs from run to run, it is the mean over the runs.
+    for reason in &learnt.diagnosis.reasons {
+        if let Reason::RunsDiffer(unequal) = reason {
+            let place = first.shown.iter().position(|(_, estimate)| estimate.effect == unequal.effect);
+            place.into_iter().for_each(|place| first.covariance[(place, place)] += unequal.variance());
+        }
     }
     first
 }

@@ -9,6 +9,7 @@ use super::repeats::Repeated;
 use super::responses::Question;
 use super::search::{Added, Found, Search};
 use super::smooth::{ALONG_THE_WAY, Motion};
+use super::unequal::unequal;
 use super::{experiments, significance, varying};
 use crate::diagnose::diagnosis::{Diagnosis, GoodnessOfFit, Verdict};
 use crate::diagnose::experiments::Experiment;
@@ -58,7 +59,7 @@ impl Conclusion {
         let mut reasons = doubts_of(last, options);
         reasons.extend(reason_to_doubt(repeats.as_ref()));
         reasons.extend(Reason::of_remains(&remains, last.fitted.observed.resolution()));
-        reasons.extend(odd_run(last));
+        reasons.extend(unequal(last).or_else(|| odd_run(last)));
         reasons.extend(varying::of_smooths(last, options));
         let (mut experiments, mut hints) = (Vec::new(), Vec::new());
         for (exam, added) in search.exams.iter().zip(&search.added) {

@@ -35,7 +35,7 @@ const SETS: (usize, usize) = (100, 2_000_000);
 const OPEN_SCALE: f64 = 2.5e-4;
 /// Errors may exceed the 95 % quantile of simulated sets by this factor: noise that is correlated over metres makes drifts 2.6 times as
 /// large as the noise model predicts.
-const REMEMBERS: f64 = 2.5;
+pub(super) const REMEMBERS: f64 = 2.5;
 
 /// Reasons from the noise, the jumps, the size of the residuals and the headings. The runs lie along the model.
 pub(super) fn of_model(observed: &Observed, model: &Model, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {

@@ -47,13 +47,7 @@ impl OddRun {
 /// Beside the other values of the model, the first effects of a run and those of all others are estimated from the products of their whitened
 /// columns. Their difference, by its covariance, is χ² distributed where the robot is the same.
 pub(super) fn odd_run(exam: &Examination) -> Option<Reason> {
-    let first = exam.fitted.model.robot().drive.first_effects();
-    let columns: Vec<usize> = exam
-        .free
-        .iter()
-        .copied()
-        .filter(|column| exam.name(*column).is_some_and(|name| first.contains(&name)))
-        .collect();
+    let columns = first_columns(exam);
     let runs = exam.fitted.observed.runs.len();
     if columns.is_empty() || runs < FEWEST {
         return None;
@@ -72,6 +66,32 @@ pub(super) fn odd_run(exam: &Examination) -> Option<Reason> {
     })
 }
 
+/// Columns of the first effects of the drive that are fitted.
+pub(super) fn first_columns(exam: &Examination) -> Vec<usize> {
+    let first = exam.fitted.model.robot().drive.first_effects();
+    let is_first = |column: &usize| exam.name(*column).is_some_and(|name| first.contains(&name));
+    exam.free.iter().copied().filter(is_first).collect()
+}
+
+/// Products of the whitened columns over a run.
+pub(super) fn products_of(exam: &Examination, run: usize) -> DMatrix<f64> {
+    let mut products = DMatrix::zeros(exam.system.width, exam.system.width);
+    exam.system.units.iter().filter(|unit| unit.run == run).for_each(|unit| products += &unit.white);
+    products
+}
+
+/// The steps from the model's values that products of columns estimate, the other values as they are, and their covariance.
+pub(super) fn steps(
+    exam: &Examination,
+    products: &DMatrix<f64>,
+    columns: &[usize],
+) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    let solver = solver(products, columns)?;
+    let right = DMatrix::from_fn(columns.len(), 1, |i, _| products[(columns[i], exam.system.residual())]);
+    let covariance = solver.solve(&DMatrix::identity(columns.len(), columns.len()));
+    Some((solver.solve(&right).column(0).into_owned(), covariance))
+}
+
 /// How the first effects of a run differ from those of the others.
 struct Difference {
     run: usize,
@@ -84,17 +104,9 @@ struct Difference {
 impl Difference {
     /// `None` where the run, or the others, do not determine all of them.
     fn of(exam: &Examination, run: usize, columns: &[usize]) -> Option<Difference> {
-        let system = &exam.system;
-        let mut products = DMatrix::zeros(system.width, system.width);
-        system.units.iter().filter(|unit| unit.run == run).for_each(|unit| products += &unit.white);
-        let rest = &system.whole - &products;
-        let estimate = |products: &DMatrix<f64>| {
-            let solver = solver(products, columns)?;
-            let right = DMatrix::from_fn(columns.len(), 1, |i, _| products[(columns[i], system.residual())]);
-            let covariance = solver.solve(&DMatrix::identity(columns.len(), columns.len()));
-            Some((solver.solve(&right).column(0).into_owned(), covariance))
-        };
-        let ((own, of_own), (others, of_others)) = (estimate(&products)?, estimate(&rest)?);
+        let products = products_of(exam, run);
+        let rest = &exam.system.whole - &products;
+        let [(own, of_own), (others, of_others)] = [steps(exam, &products, columns)?, steps(exam, &rest, columns)?];
         let difference = &own - &others;
         let statistic = (of_own + of_others).cholesky()?.solve(&difference).dot(&difference);
         Some(Difference { run, own, others, p: chi_squared_upper_tail(statistic, columns.len() as f64) })

@@ -113,16 +113,23 @@ fn role(recording: &Recording, name: &str) -> Option<&'static str> {
         return Some("wheels");
     }
     let is_pose = ["x_ref_", "y_ref_", "theta_ref_", "gyro_"].iter().any(|base| name.starts_with(base));
-    (is_pose && !recording.reference.is_empty()).then_some("reference")
+    (is_pose && has_poses(recording)).then_some("reference")
+}
+
+fn has_poses(recording: &Recording) -> bool {
+    !recording.reference.is_empty() || !recording.apart.poses.is_empty()
 }
 
 fn reference(recording: &Recording) -> Option<ReferenceFound> {
-    let poses = &recording.reference;
-    let times: Vec<f64> = poses.iter().filter_map(|pose| recording.time.get(pose.sample)).copied().collect();
-    (!poses.is_empty()).then(|| ReferenceFound {
-        source: "columns of its rows".to_owned(),
-        poses: poses.len(),
-        headings: poses.iter().filter(|pose| pose.heading.is_some()).count(),
+    let (beside, apart) = (&recording.reference, &recording.apart);
+    let times = beside.iter().filter_map(|pose| recording.time.get(pose.sample));
+    let mut times: Vec<f64> = times.chain(&apart.time).copied().collect();
+    times.sort_by(f64::total_cmp);
+    let headings = beside.iter().map(|pose| pose.heading).chain(apart.poses.iter().map(|pose| pose.2));
+    has_poses(recording).then(|| ReferenceFound {
+        source: if apart.poses.is_empty() { "columns of its rows" } else { "rows of their own" }.to_owned(),
+        poses: times.len(),
+        headings: headings.flatten().count(),
         rate: usual_rate(&times),
     })
 }

@@ -6,10 +6,12 @@ use crate::error::{At, DatasetError, LineProblem, quoted};
 use crate::recording::Recording;
 use crate::sheet::{Row, Sheet};
 use crate::source::Source;
+use crate::track_rows::TrackRows;
 use Quantity::{Angle, Bare, Length, Time, TurnRate};
 use umbmark_core::dataset::{ReferencePose, TickLog};
 use umbmark_core::drive::{DriveKind, Robot};
 use umbmark_core::geometry::Pose2;
+use umbmark_core::run::PoseRow;
 
 /// The mark that the column `closed` means.
 const START: &str = "START";
@@ -96,36 +98,73 @@ impl LogColumns {
         let rates = self.gyro.is_some();
         let headings_only = rates || matches!(self.reference, Some(ReferenceColumns::Headings(_)));
         let relative = rates || self.steps.is_some();
-        Recording { file: file.to_owned(), columns, counts, relative, headings_only, rates, ..Recording::default() }
+        let apart = TrackRows { file: file.to_owned(), column: self.time.name.clone(), rates, ..TrackRows::default() };
+        Recording {
+            file: file.to_owned(),
+            columns,
+            counts,
+            apart,
+            relative,
+            headings_only,
+            rates,
+            ..Recording::default()
+        }
     }
 
     fn read(&self, row: &Row, recording: &mut Recording) -> Result<(), DatasetError> {
+        let told = self.told(row, recording)?;
+        if self.counts.iter().all(|column| row.text(column).is_empty()) {
+            match told {
+                Some(pose) => recording.apart.push(row.line, row.number(&self.time)?, pose),
+                None => recording.empty += 1,
+            }
+            return Ok(());
+        }
         recording.lines.push(row.line);
         recording.time.push(row.number(&self.time)?);
         for (counts, column) in recording.counts.iter_mut().zip(&self.counts) {
             counts.push(row.number(column)?);
         }
-        if let Some(columns) = &self.reference
-            && let Some(pose) = columns.read(row, recording.time.len() - 1)?
-        {
-            recording.reference.push(pose);
-        }
-        if let Some(gyro) = &self.gyro
-            && let Some(rate) = row.number_or(gyro)?
-        {
-            let sample = recording.time.len() - 1;
-            recording.reference.push(ReferencePose { sample, x: 0.0, y: 0.0, heading: Some(rate) });
-        }
-        if let Some(columns) = &self.steps {
-            add_step(columns, row, recording)?;
+        let sample = recording.time.len() - 1;
+        if let Some((x, y, heading)) = told {
+            let is_first = recording.reference.is_empty() && recording.apart.time.is_empty();
+            if self.steps.is_some() && is_first && sample > 0 {
+                // The first step begins at the first row.
+                recording.reference.push(ReferencePose { sample: 0, x: 0.0, y: 0.0, heading: Some(0.0) });
+            }
+            recording.reference.push(ReferencePose { sample, x, y, heading });
         }
         let closed = self.closed.as_ref().map(|column| is_closed(column, row)).transpose()?.unwrap_or(false);
         let named = self.mark.as_ref().map(|column| row.text(column)).filter(|mark| !mark.is_empty());
         if let Some(mark) = named.or(closed.then_some(START)) {
-            recording.marked.push((recording.time.len() - 1, mark.to_owned()));
+            recording.marked.push((sample, mark.to_owned()));
         }
         Ok(())
     }
+
+    /// What the reference tells in a row; the rate of a gyro stands for its heading.
+    fn told(&self, row: &Row, recording: &Recording) -> Result<Option<PoseRow>, DatasetError> {
+        if let Some(columns) = &self.reference {
+            return columns.read(row);
+        }
+        if let Some(gyro) = &self.gyro {
+            return Ok(row.number_or(gyro)?.map(|rate| (0.0, 0.0, Some(rate))));
+        }
+        let Some(columns) = &self.steps else { return Ok(None) };
+        let Some(step) = step(columns, row)? else { return Ok(None) };
+        let at = last_pose(recording).compose(&step);
+        Ok(Some((at.x, at.y, Some(at.heading))))
+    }
+}
+
+/// The pose in the last row that has one.
+fn last_pose(recording: &Recording) -> Pose2 {
+    let beside =
+        recording.reference.last().map(|pose| (recording.lines.of(pose.sample), (pose.x, pose.y, pose.heading)));
+    let apart = &recording.apart;
+    let apart = apart.poses.last().map(|pose| (apart.lines.of(apart.poses.len() - 1), *pose));
+    let last = beside.into_iter().chain(apart).max_by_key(|(line, _)| *line);
+    last.map_or(Pose2::IDENTITY, |(_, (x, y, heading))| Pose2::new(x, y, heading.unwrap_or(0.0)))
 }
 
 /// Whether the robot stands on its START mark.
@@ -148,25 +187,21 @@ fn find_steps(columns: &mut Columns) -> Result<Option<[Column; 3]>, DatasetError
     Ok(Some([x?, y?, columns.need(names[2], Angle, needs)?]))
 }
 
-/// Adds the step of a row, if it has one, to the last pose; the first one begins at the first row.
-fn add_step(columns: &[Column; 3], row: &Row, recording: &mut Recording) -> Result<(), DatasetError> {
-    let cells = columns.each_ref().map(|column| row.number_or(column));
-    let sample = recording.time.len() - 1;
-    let ([Ok(Some(dx)), Ok(Some(dy)), Ok(Some(turned))], before) = (cells.clone(), recording.reference.last()) else {
-        for (column, cell) in columns.iter().zip(&cells) {
-            if cells.iter().any(|cell| !matches!(cell, Ok(None))) && matches!(cell, Ok(None)) {
-                return Err(row.wrong(column, "a finite number", "fill in the step, or leave all its cells empty"));
-            }
-        }
-        return cells.into_iter().try_for_each(|cell| cell.map(|_| ()));
-    };
-    let before = before.map_or(Pose2::IDENTITY, |pose| Pose2::new(pose.x, pose.y, pose.heading.unwrap_or(0.0)));
-    if recording.reference.is_empty() && sample > 0 {
-        recording.reference.push(ReferencePose { sample: 0, x: 0.0, y: 0.0, heading: Some(0.0) });
+/// The step of a row, if it has one.
+fn step(columns: &[Column; 3], row: &Row) -> Result<Option<Pose2>, DatasetError> {
+    let mut cells = [None; 3];
+    for (cell, column) in cells.iter_mut().zip(columns) {
+        *cell = row.number_or(column)?;
     }
-    let at = before.compose(&Pose2::new(dx, dy, turned));
-    recording.reference.push(ReferencePose { sample, x: at.x, y: at.y, heading: Some(at.heading) });
-    Ok(())
+    if let [Some(dx), Some(dy), Some(turned)] = cells {
+        return Ok(Some(Pose2::new(dx, dy, turned)));
+    }
+    match columns.iter().zip(&cells).find(|(_, cell)| cell.is_none()) {
+        Some((column, _)) if cells.iter().any(Option::is_some) => {
+            Err(row.wrong(column, "a finite number", "fill in the step, or leave all its cells empty"))
+        }
+        _ => Ok(None),
+    }
 }
 
 impl ReferenceColumns {
@@ -198,17 +233,16 @@ impl ReferenceColumns {
 
     /// The pose of a row, if one was measured there.
     #[inline]
-    pub fn read(&self, row: &Row, sample: usize) -> Result<Option<ReferencePose>, DatasetError> {
+    pub fn read(&self, row: &Row) -> Result<Option<PoseRow>, DatasetError> {
         let (x, y, heading) = match self {
             ReferenceColumns::Poses { x, y, heading } => (x, y, heading),
             ReferenceColumns::Headings(column) => {
-                let pose = |heading| ReferencePose { sample, x: 0.0, y: 0.0, heading: Some(heading) };
-                return Ok(row.number_or(column)?.map(pose));
+                return Ok(row.number_or(column)?.map(|heading| (0.0, 0.0, Some(heading))));
             }
         };
         let heading = heading.as_ref().map(|column| row.number_or(column)).transpose()?.flatten();
         match (row.number_or(x)?, row.number_or(y)?) {
-            (Some(x), Some(y)) => Ok(Some(ReferencePose { sample, x, y, heading })),
+            (Some(x), Some(y)) => Ok(Some((x, y, heading))),
             (None, None) if heading.is_none() => Ok(None),
             (None, _) => Err(row.wrong(x, "a finite number", "fill in the pose, or leave all its cells empty")),
             (_, None) => Err(row.wrong(y, "a finite number", "fill in the pose, or leave all its cells empty")),

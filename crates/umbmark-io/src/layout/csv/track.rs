@@ -28,12 +28,8 @@ pub(super) fn parse_columns(source: Source, warnings: &mut Vec<String>) -> Resul
     columns.finish(warnings)?;
     let mut rows = TrackRows { file: sheet.file().to_owned(), column: time.name.clone(), ..TrackRows::default() };
     sheet.for_each(|row| {
-        match reference.read(row, 0)? {
-            Some(pose) => {
-                rows.lines.push(row.line);
-                rows.time.push(row.number(&time)?);
-                rows.poses.push((pose.x, pose.y, pose.heading));
-            }
+        match reference.read(row)? {
+            Some(pose) => rows.push(row.line, row.number(&time)?, pose),
             None => rows.lost += 1,
         }
         Ok(())

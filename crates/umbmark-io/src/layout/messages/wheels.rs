@@ -138,11 +138,6 @@ impl Wheels {
             odometry_to_ticks(&mut self.values, robot);
         }
         Recording {
-            marked: Vec::new(),
-            relative: false,
-            headings_only: false,
-            rates: false,
-            clock_excess: 0.0,
             file: file.to_owned(),
             columns: [clock.name().to_owned(), names[0].clone(), names[1].clone()]
                 .map(|name| format!("{topic} {name}"))
@@ -150,9 +145,7 @@ impl Wheels {
             lines: (1..=self.times.len()).collect(),
             time: self.times.iter().map(|times| clock.seconds(times)).collect(),
             counts: self.values.into(),
-            per_cycle: false,
-            angle_of_row: false,
-            reference: Vec::new(),
+            ..Recording::default()
         }
     }
 }

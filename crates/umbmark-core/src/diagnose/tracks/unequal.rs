@@ -1,0 +1,196 @@
+//! Whether the first effects differ from run to run.
+//!
+//! Noise that is fitted from step to step hardly grows where a whole run is 0.3 % longer than the next, and the interval of the common value is that
+//! of one value for all runs. So each run's own values are compared.
+//!
+//! Source: Cochran (1954), Biometrics 10, 101 (Q); DerSimonian & Laird (1986), Controlled Clinical Trials 7, 177 (the variance between runs).
+
+use super::doubts::REMEMBERS;
+use super::examination::Examination;
+use super::odd::{first_columns, products_of, steps};
+use crate::diagnose::reason::Reason;
+use crate::evidence::tracks::Misses;
+use crate::stats::chi_squared_upper_tail;
+use nalgebra::{DMatrix, DVector};
+
+/// Fewest runs of which it is told.
+const FEWEST: usize = 4;
+/// Maximum p over all that is compared, of all runs and without the one that is farthest off.
+const SURE: [f64; 2] = [1e-4, 1e-2];
+/// Least standard deviation between runs, ...
+const LEAST: f64 = 5e-4;
+/// ... and the share by which errors along the way fall at least with each run's own values.
+const LEAST_FALL: f64 = 0.2;
+
+/// A first effect that differs from run to run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unequal {
+    /// As it is called.
+    pub effect: &'static str,
+    /// Standard deviation between runs, beside that of each run's own estimate.
+    pub deviation: f64,
+    /// The smallest and the largest value of a run.
+    pub range: [f64; 2],
+    /// How many runs tell it.
+    pub runs: usize,
+}
+
+impl Unequal {
+    /// In a sentence, without a full stop.
+    pub fn sentence(&self) -> String {
+        let Unequal { effect, deviation, range: [least, most], runs } = self;
+        format!(
+            "{effect} differs from run to run, by more than noise: {least:.5} to {most:.5} in {runs} runs, standard deviation {:.2} %. The fitted \
+             number is their mean. What changed between the runs: floor, load, tyres, battery, reference? Give runs of one kind as a dataset of \
+             their own",
+            100.0 * deviation
+        )
+    }
+
+    /// Variance of the mean over the runs, from what is between them.
+    pub fn variance(&self) -> f64 {
+        self.deviation * self.deviation / self.runs as f64
+    }
+}
+
+/// Estimates of one value, a run each.
+struct Estimates {
+    steps: Vec<f64>,
+    variances: Vec<f64>,
+}
+
+impl Estimates {
+    fn weighted(&self, power: i32) -> impl Iterator<Item = f64> + '_ {
+        self.variances.iter().map(move |variance| (1.0 / variance).powi(power))
+    }
+
+    /// Cochran's Q and the weighted mean.
+    fn spread(&self) -> (f64, f64) {
+        let mean =
+            self.weighted(1).zip(&self.steps).map(|(w, step)| w * step).sum::<f64>() / self.weighted(1).sum::<f64>();
+        (self.weighted(1).zip(&self.steps).map(|(w, step)| w * (step - mean).powi(2)).sum(), mean)
+    }
+
+    fn p(&self) -> f64 {
+        chi_squared_upper_tail(self.spread().0, self.steps.len() as f64 - 1.0)
+    }
+
+    /// The same without the run that is farthest from the mean.
+    fn without_farthest(&self) -> Estimates {
+        let (_, mean) = self.spread();
+        let off = |i: &usize| (self.steps[*i] - mean).powi(2) / self.variances[*i];
+        let farthest = (0..self.steps.len()).max_by(|a, b| off(a).total_cmp(&off(b)));
+        let kept = || (0..self.steps.len()).filter(|i| Some(*i) != farthest);
+        Estimates {
+            steps: kept().map(|i| self.steps[i]).collect(),
+            variances: kept().map(|i| self.variances[i]).collect(),
+        }
+    }
+
+    /// The standard deviation between runs.
+    fn between(&self) -> f64 {
+        let (q, _) = self.spread();
+        let [one, two] = [1, 2].map(|power| self.weighted(power).sum::<f64>());
+        ((q - (self.steps.len() as f64 - 1.0)) / (one - two / one)).max(0.0).sqrt()
+    }
+}
+
+/// The reason for doubt from the first effect that differs most, where one does.
+pub(super) fn unequal(exam: &Examination) -> Option<Reason> {
+    let columns = first_columns(exam);
+    let told = (0..exam.fitted.observed.runs.len()).map(|run| steps(exam, &products_of(exam, run), &columns));
+    let told: Vec<_> = told.collect();
+    let runs = told.iter().flatten().count();
+    if columns.is_empty() || runs < FEWEST {
+        return None;
+    }
+    let of = |place: usize| Estimates {
+        steps: told.iter().flatten().map(|(own, _)| own[place]).collect(),
+        variances: told.iter().flatten().map(|(_, all)| REMEMBERS * REMEMBERS * all[(place, place)]).collect(),
+    };
+    let all: Vec<Estimates> = (0..columns.len()).map(of).collect();
+    let sure = |estimates: &Estimates, most: f64| estimates.p() * columns.len() as f64 <= most;
+    let differs = |place: &usize| {
+        let estimates = &all[*place];
+        let sure = sure(estimates, SURE[0]) && sure(&estimates.without_farthest(), SURE[1]);
+        sure && estimates.between() > LEAST
+    };
+    let place = (0..columns.len()).filter(differs).min_by(|a, b| all[*a].p().total_cmp(&all[*b].p()))?;
+    let value = exam.fitted.model.values().nth(exam.fitted.free[columns[place]]).unwrap_or(1.0);
+    let range = all[place]
+        .steps
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], step| [low.min(value + step), high.max(value + step)]);
+    (fall(exam, &columns, &told) >= LEAST_FALL).then(|| {
+        let effect = exam.name(columns[place]).unwrap_or_default();
+        Reason::RunsDiffer(Unequal { effect, deviation: all[place].between(), range, runs })
+    })
+}
+
+/// By which share errors along the way fall with each run's own values: positions or headings.
+fn fall(exam: &Examination, columns: &[usize], own: &[Option<(DVector<f64>, DMatrix<f64>)>]) -> f64 {
+    let run_of: Vec<Option<usize>> =
+        (0..exam.system.folds()).map(|fold| exam.system.of_fold(fold).next().map(|unit| unit.run)).collect();
+    let left = |with_own: bool| {
+        let squares = exam.errors.squares(|fold| match run_of[fold].and_then(|run| own[run].as_ref()) {
+            Some((values, _)) if with_own => (columns.to_vec(), values.clone()),
+            _ => (Vec::new(), DVector::zeros(0)),
+        });
+        let of = |k: usize| squares.iter().map(|fold| fold[k]).sum::<f64>().sqrt();
+        Misses { position: of(0), heading: Some(of(1)).filter(|heading| *heading > 0.0), white: of(2) }
+    };
+    let [_, most] = left(true).falls(&left(false));
+    most
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::tests::robot_with;
+    use crate::diagnose::tracks::diagnose;
+    use crate::diagnose::{Options, Verdict, first_model};
+    use crate::drive::Robot;
+    use crate::likelihood::Observed;
+    use crate::likelihood::watched::watched;
+
+    /// Verdict and what differs, where the runs are of robots with these scales in turn.
+    fn of_scales(scales: &[f64]) -> (Verdict, Vec<Unequal>) {
+        let mut data = watched(&robot_with(&[]), 3, 5);
+        let own = robot_with(&[]).get("scale", "e_s").unwrap_or(1.0);
+        for (run, scale) in scales.iter().enumerate() {
+            let other = watched(&robot_with(&[("scale", "e_s", own * scale)]), 3, 5);
+            data.runs[run] = other.runs[run].clone();
+        }
+        let observed = Observed::new(&data, &Robot::labmate()).unwrap();
+        let diagnosis = diagnose(&observed, &first_model(&data).unwrap(), &Options::default()).unwrap();
+        let told = diagnosis.reasons.iter().filter_map(|reason| match reason {
+            Reason::RunsDiffer(unequal) => Some(unequal.clone()),
+            _ => None,
+        });
+        (diagnosis.verdict, told.collect())
+    }
+
+    #[test]
+    fn a_scale_that_differs_from_run_to_run_is_told_and_one_run_that_differs_is_not_called_so() {
+        let scales = [0.994, 1.003, 1.006, 0.998, 1.002, 0.997];
+        let (verdict, told) = of_scales(&scales);
+        let [told] = &told[..] else { panic!("{told:?}") };
+        assert_eq!((verdict, told.effect, told.runs), (Verdict::NotExplained, "scale", 6));
+        assert!((3e-3..7e-3).contains(&told.deviation), "{told:?}");
+        assert!((told.range[1] - told.range[0] - 0.012).abs() < 2e-3, "{told:?}");
+        assert!((told.variance() - told.deviation.powi(2) / 6.0).abs() < 1e-18);
+        assert_eq!(of_scales(&[1.0, 1.01]).1, []);
+        assert_eq!(of_scales(&[]).1, []);
+    }
+
+    #[test]
+    fn what_is_between_runs_is_found_beside_what_is_in_them() {
+        let estimates = |steps: &[f64]| Estimates { steps: steps.to_vec(), variances: vec![1e-8; steps.len()] };
+        // Of equal variances, Q is the sum of squares over the variance.
+        let four = estimates(&[1e-3, -1e-3, 3e-3, -3e-3]);
+        assert!((four.spread().0 / 2000.0 - 1.0).abs() < 1e-9 && four.spread().1.abs() < 1e-15);
+        assert!((four.between().powi(2) / (2e-5 / 3.0 - 1e-8) - 1.0).abs() < 1e-9);
+        assert_eq!(four.without_farthest().steps.len(), 3);
+        assert_eq!(estimates(&[1e-5, -1e-5, 0.0]).between(), 0.0);
+    }
+}
