@@ -14,7 +14,8 @@ UMBMARK = TOP / "target" / "release" / "umbmark"
 # As `cargo test` built them.
 PROGRAMS = TOP / "target" / "debug" / "examples"
 GUIDES = sorted((TOP / "docs" / "guide").glob("*.md"))
-PAGES = [TOP / "README.md", TOP / "examples" / "README.md", *GUIDES]
+GALLERY = TOP / "docs" / "gallery.md"
+PAGES = [TOP / "README.md", TOP / "examples" / "README.md", GALLERY, *GUIDES]
 LINKED = [*TOP.glob("*.md"), *TOP.glob("*/*.md"), *TOP.glob("docs/*/*.md")]
 
 
@@ -77,6 +78,16 @@ def test_every_command_of_a_page_does_what_is_shown(page: Path, tmp_path: Path) 
             assert not kept.exists() or kept.read_bytes() == drawn, f"{figure} is another"
         count += 1
     assert count > 0, "a page without commands"
+
+
+def test_the_gallery_draws_and_shows_every_kind_of_figure(tmp_path: Path) -> None:
+    kinds = run("umbmark plot --help", tmp_path).partition("\nKinds:\n")[2]
+    text = GALLERY.read_text(encoding="utf-8")
+    names = re.findall(r"^  (\w+)\b", kinds, re.MULTILINE)
+    assert len(names) > 10, kinds
+    for name in names:
+        assert re.search(rf"^umbmark plot {name} .* -o {name}\.svg$", text, re.MULTILINE), name
+        assert f"](images/{name}.svg)" in text, f"{name} is drawn and not shown"
 
 
 @pytest.mark.parametrize(
