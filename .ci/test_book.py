@@ -14,7 +14,8 @@ UMBMARK = TOP / "target" / "release" / "umbmark"
 # As `cargo test` built them.
 PROGRAMS = TOP / "target" / "debug" / "examples"
 GUIDES = sorted((TOP / "docs" / "guide").glob("*.md"))
-PAGES = [TOP / "README.md", TOP / "examples" / "README.md", *GUIDES]
+GALLERY = TOP / "docs" / "gallery.md"
+PAGES = [TOP / "README.md", TOP / "examples" / "README.md", GALLERY, *GUIDES]
 LINKED = [*TOP.glob("*.md"), *TOP.glob("*/*.md"), *TOP.glob("docs/*/*.md")]
 
 
@@ -77,6 +78,37 @@ def test_every_command_of_a_page_does_what_is_shown(page: Path, tmp_path: Path) 
             assert not kept.exists() or kept.read_bytes() == drawn, f"{figure} is another"
         count += 1
     assert count > 0, "a page without commands"
+
+
+@pytest.mark.parametrize("page", GUIDES, ids=lambda page: page.stem)
+def test_a_guide_begins_with_what_you_get(page: Path) -> None:
+    _, first, *_ = page.read_text(encoding="utf-8").split("\n\n")
+    assert first.startswith("You get "), first
+
+
+def test_every_flag_of_a_command_in_the_book_exists(tmp_path: Path) -> None:
+    helps: dict[str, str] = {}
+    for page in LINKED:
+        text = page.read_text(encoding="utf-8")
+        if page.name in ("CHANGELOG.md", "bad_flags.md"):
+            continue
+        commands = re.findall(r"(?:^ *(?:\$ )?|`)umbmark ([a-z]+)\b([^\n`#]*)", text, re.MULTILINE)
+        for verb, rest in commands:
+            for flag in re.findall(r"(?<![\w-])--[a-z][\w-]*", rest):
+                if verb not in helps:
+                    helps[verb] = run(f"umbmark {verb} --help", tmp_path)
+                assert re.search(rf"{flag}\b(?!-)", helps[verb]), f"{page.name}: {verb} {flag}"
+    assert len(helps) > 15, helps.keys()
+
+
+def test_the_gallery_draws_and_shows_every_kind_of_figure(tmp_path: Path) -> None:
+    kinds = run("umbmark plot --help", tmp_path).partition("\nKinds:\n")[2]
+    text = GALLERY.read_text(encoding="utf-8")
+    names = re.findall(r"^  (\w+)\b", kinds, re.MULTILINE)
+    assert len(names) > 10, kinds
+    for name in names:
+        assert re.search(rf"^umbmark plot {name} .* -o {name}\.svg$", text, re.MULTILINE), name
+        assert f"](images/{name}.svg)" in text, f"{name} is drawn and not shown"
 
 
 @pytest.mark.parametrize(

@@ -33,9 +33,7 @@ pub use options::Options;
 pub use reason::Reason;
 pub use remains::{Chance, Left, Remains, Repeating};
 pub use suspect::Suspect;
-pub use tracks::{
-    Curve, CurvePoint, Dependence, OddRun, Repeated, Suggestion, Unequal, UnlistedLaw, what_repeats,
-};
+pub use tracks::{Curve, CurvePoint, Dependence, OddRun, Repeated, Suggestion, Unequal, UnlistedLaw, what_repeats};
 pub use unseen::{Detectable, Unseen, Why};
 
 /// The usual first model: E_d and E_b and, with tracks that show distances, E_s, all free.
