@@ -32,9 +32,10 @@ const fn unit(name: &'static str, per_si: f64, largest: f64) -> Unit {
 
 impl Quantity {
     fn units(self) -> &'static [Unit] {
-        const LENGTHS: [Unit; 3] = [unit("m", 1.0, 1e6), unit("mm", 1e3, 1e9), unit("cm", 1e2, 1e8)];
+        const LENGTHS: [Unit; 3] = [unit("m", 1.0, 1e7), unit("mm", 1e3, 1e10), unit("cm", 1e2, 1e9)];
         const ANGLES: [Unit; 2] = [unit("rad", 1.0, 1e6), unit("deg", 180.0 / std::f64::consts::PI, 1e8)];
-        const TIMES: [Unit; 1] = [unit("s", 1.0, 1e12)];
+        const TIMES: [Unit; 4] =
+            [unit("s", 1.0, 1e12), unit("ms", 1e3, 1e15), unit("us", 1e6, 1e18), unit("ns", 1e9, 1e21)];
         const TURN_RATES: [Unit; 2] = [unit("rad_s", 1.0, 1e4), unit("deg_s", 180.0 / std::f64::consts::PI, 1e6)];
         match self {
             Quantity::TurnRate => &TURN_RATES,

@@ -13,6 +13,9 @@ use umbmark_core::run::{headings_of, place};
 
 /// No wheel of a robot rolls faster \[m/s\].
 const FASTEST: f64 = 100.0;
+/// Wheels that roll more slowly \[m/s\], in rows farther apart \[s\], have another unit of time.
+const SLOWEST: f64 = 3e-3;
+const LONGEST: f64 = 1.0;
 /// Counters that are looked for where a count jumps.
 const USUAL_BITS: [u32; 5] = [8, 12, 16, 24, 32];
 /// A counter that was set back shows no more than so many usual steps, after more than so many.
@@ -141,6 +144,7 @@ impl Recording {
         let clock_excess = self.clock_excess;
         let counts = TickLog { left, right, rollers, clock_excess, mended, ..TickLog::default() };
         let mut log = TickLog { time, reference, relative, headings_only, ..counts };
+        warnings.extend(robot.and_then(|robot| slow_clock(&log, robot)).map(|told| format!("{}: {told}", self.file)));
         if let Some(apart) = apart {
             let outside = place(&mut log, &apart.time, &apart.poses);
             if outside > 0 {
@@ -370,6 +374,26 @@ fn widths_of(readings: &[f64]) -> Vec<u32> {
 fn rolled_bits(size: f64, expected: f64, widths: &[u32]) -> Option<u32> {
     let near = |bits: &u32| (size - f64::from(*bits).exp2()).abs() <= 4.0 * expected;
     if size > 10.0 * expected { widths.iter().copied().find(near) } else { None }
+}
+
+/// What is said of wheels that roll at no robot's speed, in rows that no logger writes: times in ms under the name of s.
+fn slow_clock(log: &TickLog, robot: &Robot) -> Option<String> {
+    let per_tick = robot.metres_per_tick();
+    let (mut way, mut seconds, mut rows) = (0.0, 0.0, 0.0);
+    for at in 1..log.time.len() {
+        let of_wheel = |counts: &[f64], metres: f64| (metres * (counts[at] - counts[at - 1])).abs();
+        let rolled = of_wheel(&log.left, per_tick.left).max(of_wheel(&log.right, per_tick.right));
+        if rolled > 0.0 {
+            (way, seconds, rows) = (way + rolled, seconds + log.time[at] - log.time[at - 1], rows + 1.0);
+        }
+    }
+    let (speed, period) = (way / seconds, seconds / rows);
+    (speed < SLOWEST && period > LONGEST).then(|| {
+        format!(
+            "the wheels roll at {:.2} mm/s, by rows that are {period:.0} s apart: if the times are in milliseconds, call their column t_ms",
+            1e3 * speed
+        )
+    })
 }
 
 /// The error of time that goes back, or stands still, at row `at`.

@@ -634,3 +634,20 @@ fn rates_and_steps_in_rows_of_their_own_are_added_up_as_those_beside_counts_are(
         assert!((beside.heading.unwrap() - apart.heading.unwrap()).abs() < 1e-9, "{header}: {beside:?} {apart:?}");
     }
 }
+
+#[test]
+fn times_in_milliseconds_are_read_by_their_name_and_asked_about_where_they_are_called_seconds() {
+    let rows = |name: &str, scale: f64| {
+        let row = |i: i32| format!("{},{},{}\n", scale * 0.05 * f64::from(i), 40 * i, 40 * i);
+        log("cw_01.csv", &((0..50).map(row).fold(format!("{name},ticks_left,ticks_right\n"), |all, row| all + &row)))
+    };
+    let time = |data: &Dataset| data.runs[0].log.as_ref().unwrap().time[49];
+    for (name, scale) in [("t_s", 1.0), ("t_ms", 1e3), ("t_us", 1e6), ("t_ns", 1e9)] {
+        let data = rows(name, scale);
+        assert!((time(&data) - 2.45).abs() < 1e-9, "{name}");
+        assert_eq!(data.warnings, Vec::<String>::new(), "{name}");
+    }
+    let told = rows("t_s", 1e3).warnings.join("\n");
+    assert!(told.contains("the wheels roll at 0.50 mm/s, by rows that are 50 s apart"), "{told}");
+    assert!(told.contains("call their column t_ms"), "{told}");
+}

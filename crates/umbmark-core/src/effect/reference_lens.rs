@@ -40,7 +40,7 @@ impl Effect for ReferenceLens {
                     "lens-x",
                     "m",
                     0.0,
-                    (-1e3, 1e3),
+                    (-1e7, 1e7),
                     "middle of the picture, in the frame of the measured poses",
                 )
             },
@@ -51,7 +51,7 @@ impl Effect for ReferenceLens {
                     "lens-y",
                     "m",
                     0.0,
-                    (-1e3, 1e3),
+                    (-1e7, 1e7),
                     "middle of the picture, in the frame of the measured poses",
                 )
             },

@@ -11,7 +11,7 @@ use crate::track_rows::TrackRows;
 /// More pairs of frames are not kept apart.
 const MOST_FRAMES: usize = 256;
 /// Positions farther away are none \[m\].
-const FARTHEST: f64 = 1e6;
+const FARTHEST: f64 = 1e7;
 /// Nothing on wheels turns faster \[rad/s\].
 const FASTEST: f64 = 1e4;
 
