@@ -25,6 +25,7 @@ Shape: TypeAlias = Literal[
     "straight",
     "spin",
     "fixed_square",
+    "fixed_circle",
     "diagonal_square",
     "sideways_square",
     "slide",
