@@ -73,17 +73,14 @@ impl RollerOdometry {
     /// wheels) elsewhere in the mean and at most 10 µm, where the counts of the whole move as one arc are 0.6 mm and 0.8 mm off.
     pub fn motion(&self, line: &RollerLine) -> Motion {
         let unit = |units: i64| units as f64 / UNITS_PER_TICK as f64;
-        let mut parts = [[0.0; MOST_WHEELS]; 3];
-        for wheel in 0..MOST_WHEELS {
+        let parts: [[f64; 3]; MOST_WHEELS] = std::array::from_fn(|wheel| {
             let end = line.start[wheel] + line.travel[wheel];
             if end.div_euclid(UNITS_PER_TICK) == 0 {
-                continue;
+                return [0.0; 3];
             }
-            parts[0][wheel] = unit(line.start[wheel]) - 0.5;
-            parts[1][wheel] = unit(line.travel[wheel]);
-            parts[2][wheel] = 0.5 - unit(end.rem_euclid(UNITS_PER_TICK));
-        }
-        let [begin, roll, end] = parts.map(|counts| Motion::exp(&self.displacement(counts)));
+            [unit(line.start[wheel]) - 0.5, unit(line.travel[wheel]), 0.5 - unit(end.rem_euclid(UNITS_PER_TICK))]
+        });
+        let [begin, roll, end] = [0, 1, 2].map(|part| Motion::exp(&self.displacement(parts.map(|wheel| wheel[part]))));
         begin.then(&roll).then(&end)
     }
 
