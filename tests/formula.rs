@@ -144,6 +144,7 @@ fn integrated(
             Move::Straight { length } => (length, 0.0),
             Move::Turn { angle } => (0.0, angle),
             Move::Arc { radius, angle } => (radius * angle.abs(), angle),
+            Move::Slide { .. } => panic!("a differential drive does not move sideways"),
         };
         let rate = |[x, y, heading]: [f64; 3]| {
             let way = length * (1.0 + ahead(x, y));

@@ -100,7 +100,8 @@ fn bumps_early_or_late_on_the_leg_change_the_return_position_and_not_the_heading
         truth.start(Direction::Ccw);
         let course = Course::new(m.robot(), &Path::umbmark(), Direction::Ccw).unwrap();
         for (index, leg) in course.legs.iter().enumerate() {
-            let stretch = Stretch { index, direction: Direction::Ccw, test: TestKind::Systematic, travel: leg.travel };
+            let stretch =
+                Stretch { index, direction: Direction::Ccw, test: TestKind::Systematic, travel: leg.travel, left: 0.0 };
             truth.begin(stretch, leg);
             if index == 0 {
                 truth.place(Bump { at, wheel: Wheel::Left, lost });

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use umbmark_core::drive::{DriveKind, Robot};
 use umbmark_core::effect::{Entry, Model};
 use umbmark_core::parameter::Parameter;
-use umbmark_core::path::{CIRCLE, Direction, Path, SpeedProfile};
+use umbmark_core::path::{CIRCLE, Direction, FIXED_SQUARE, Path, SpeedProfile};
 use umbmark_core::preset::Preset;
 use umbmark_core::replay::Track;
 
@@ -48,16 +48,24 @@ pub struct Moment {
 }
 
 impl Signature {
-    /// The signature of an effect's first number that has one, on the paper's square, or on a circle where the square shows nothing; `None` where it
-    /// acts by chance only. The robot is the LabMate, and the CLAPPER where only that may have it.
+    /// The signature of an effect's first number that has one, on the paper's square, or on a circle or a square at a fixed heading where the
+    /// square shows nothing; `None` where it acts by chance only. The robot is the LabMate; where only the CLAPPER or bases on rollers may have
+    /// the effect, it is that, or the first of those.
     pub fn of(entry: &'static Entry) -> anyhow::Result<Option<Signature>> {
         let trucks = entry.drives().each().all(DriveKind::has_trucks);
-        let robot = match Preset::find("clapper") {
-            Ok(preset) if trucks => preset.robot(),
+        let rollers = entry.drives().each().next().filter(|_| entry.drives().each().all(DriveKind::moves_sideways));
+        let robot = match (Preset::find("clapper"), rollers) {
+            (Ok(preset), _) if trucks => preset.robot(),
+            (_, Some(kind)) => Robot { drive: kind.usual(), ..Robot::labmate() },
             _ => Robot::labmate(),
         };
         let circle = Path::new(&CIRCLE, &[1.0, 1.0], SpeedProfile::default())?;
-        let mut paths = vec![("4 m square", Path::umbmark()), ("circle of radius 1 m", circle)];
+        let fixed = Path::new(&FIXED_SQUARE, &[4.0], SpeedProfile::default())?;
+        let mut paths = vec![
+            ("4 m square", Path::umbmark()),
+            ("circle of radius 1 m", circle),
+            ("4 m square at a fixed heading", fixed),
+        ];
         paths.retain(|(_, path)| path.suits(&robot));
         for parameter in entry.about.parameters {
             let value = parameter.usual(&robot);
@@ -161,10 +169,10 @@ fn run(model: &Model, path: &Path, direction: Direction) -> Vec<Moment> {
     let believed = track.poses(&Model::new(robot).chain());
     let seen = track.poses(&model.chain());
     let mut way = 0.0;
-    let pieces = track.travel().iter().zip(believed.iter().zip(&seen));
+    let pieces = track.travel().iter().zip(track.contexts()).zip(believed.iter().zip(&seen));
     pieces
-        .map(|(travel, (believed, seen))| {
-            way += travel.rolled();
+        .map(|((travel, at), (believed, seen))| {
+            way += travel.rolled().max(at.aside.way.abs());
             let error = believed.between(seen);
             let turning = travel.left * travel.right < 0.0;
             Moment { way, turning, forward: error.x, sideways: error.y, heading: error.heading }

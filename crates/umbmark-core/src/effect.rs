@@ -229,6 +229,47 @@ pub struct Stretch {
     pub test: TestKind,
     /// Believed wheel travel \[m\].
     pub travel: WheelTravel,
+    /// Believed way to the left \[m\].
+    pub left: f64,
+}
+
+impl Stretch {
+    /// Way of the wheels on either side of the course \[m\]: those of an axle that stands across it. Where the robot does not move sideways,
+    /// that is its own.
+    pub fn across(&self) -> WheelTravel {
+        across(&self.travel, self.left)
+    }
+}
+
+/// A way to the left by less than this share of what the wheels of the axle roll is what their counters leave of whole ticks.
+const STRAY: f64 = 1e-3;
+
+/// Cosine and sine of the course from the heading, of a robot that moves sideways; `None` where it does not.
+#[inline]
+pub(crate) fn course(travel: &WheelTravel, left: f64) -> Option<[f64; 2]> {
+    if left.abs() <= STRAY * travel.farthest() {
+        return None;
+    }
+    let ahead = 0.5 * (travel.left + travel.right);
+    let way = libm::hypot(ahead, left);
+    Some([ahead / way, left / way])
+}
+
+/// The same as an angle \[rad\]; 0 where it does not.
+#[inline]
+pub(crate) fn course_angle(travel: &WheelTravel, left: f64) -> f64 {
+    course(travel, left).map_or(0.0, |[cosine, sine]| libm::atan2(sine, cosine))
+}
+
+/// The travel of an axle that stands across the course of a robot that also moves to the left by so much \[m\].
+#[inline]
+pub(crate) fn across(travel: &WheelTravel, left: f64) -> WheelTravel {
+    if course(travel, left).is_none() {
+        return *travel;
+    }
+    let apart = 0.5 * (travel.right - travel.left);
+    let way = libm::hypot(0.5 * (travel.left + travel.right), left);
+    WheelTravel { left: way - apart, right: way + apart }
 }
 
 /// A wheel rolls over an obstacle, and its travel over ground is less than its encoder counts.

@@ -15,6 +15,8 @@
 //! every machine, on every instruction set and for every order of the work: additions and multiplications only, never
 //! fused, no trigonometry but the polynomials of [`geometry`](crate::geometry).
 //!
+//! [`RollerOdometry`] is that of three or four wheels with rollers, a move at once.
+//!
 //! [`Convoy`] is the odometry of two trucks that a link corrects, with the commands that follow from it.
 //!
 //! ```
@@ -42,6 +44,7 @@ mod motion;
 pub mod oracle;
 #[cfg(test)]
 mod random_lines;
+mod roller_odometry;
 mod sampled;
 mod tick_geometry;
 mod tick_odometry;
@@ -56,6 +59,7 @@ pub use convoy::{Convoy, ConvoyStep, Floor, Predicted, Trucks};
 pub use integrator::{Integrator, Method, Segment};
 pub use monoid::Monoid;
 pub use motion::Motion;
+pub use roller_odometry::{RollerLine, RollerOdometry};
 pub use sampled::{CounterTrack, Profile, SampledOdometry, Update};
 pub use tick_geometry::TickGeometry;
 pub use tick_odometry::TickOdometry;

@@ -182,6 +182,10 @@ impl Study {
             let (drive, what) = (self.robot().drive.kind().name(), "paths with arcs");
             return Err(SimulateError::Unsupported { drive, what }.into());
         }
+        let drive = self.robot().drive.kind();
+        if let Some(index) = self.path.first_slide().filter(|_| !drive.moves_sideways()) {
+            return Err(SimulateError::Sideways { drive: drive.name(), index: index + 1 }.into());
+        }
         let model = trial::centred(&self.model, &self.draws)?;
         Ok(NoiseFree::new(&model, &self.path, model.varies()).returned())
     }

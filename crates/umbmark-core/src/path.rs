@@ -7,7 +7,7 @@
 mod pieces;
 mod speed;
 
-use crate::drive::{DifferentialDrive, Robot, WheelTravel};
+use crate::drive::{DifferentialDrive, Drive, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use crate::parameter::{Parameter, ParameterError};
 use crate::register;
@@ -25,13 +25,23 @@ register! {
     circle,
     straight,
     spin,
+    fixed_square,
+    fixed_circle,
+    diagonal_square,
+    sideways_square,
+    slide,
     waypoints,
 }
 
 pub use circle::SHAPE as CIRCLE;
+pub use diagonal_square::SHAPE as DIAGONAL_SQUARE;
 pub use figure_eight::SHAPE as FIGURE_EIGHT;
+pub use fixed_circle::SHAPE as FIXED_CIRCLE;
+pub use fixed_square::SHAPE as FIXED_SQUARE;
 pub use rectangle::SHAPE as RECTANGLE;
 pub use rounded_rectangle::SHAPE as ROUNDED_RECTANGLE;
+pub use sideways_square::SHAPE as SIDEWAYS_SQUARE;
+pub use slide::SHAPE as SLIDE;
 pub use spin::SHAPE as SPIN;
 pub use square::SHAPE as SQUARE;
 pub use straight::SHAPE as STRAIGHT;
@@ -87,17 +97,25 @@ pub enum Move {
         /// Change of heading \[rad\], counter-clockwise positive.
         angle: f64,
     },
+    /// A straight line in any direction at a fixed heading, for a robot that also moves sideways.
+    Slide {
+        /// Way ahead \[m\]; negative is backward.
+        ahead: f64,
+        /// Way to the left \[m\].
+        left: f64,
+    },
 }
 
 impl Move {
     /// The body motion of this move.
     pub fn displacement(&self) -> Displacement2 {
-        let (forward, rotation) = match *self {
-            Move::Straight { length } => (length, 0.0),
-            Move::Turn { angle } => (0.0, angle),
-            Move::Arc { radius, angle } => (radius * angle.abs(), angle),
+        let (forward, sideways, rotation) = match *self {
+            Move::Straight { length } => (length, 0.0, 0.0),
+            Move::Turn { angle } => (0.0, 0.0, angle),
+            Move::Arc { radius, angle } => (radius * angle.abs(), 0.0, angle),
+            Move::Slide { ahead, left } => (ahead, left, 0.0),
         };
-        Displacement2 { forward, sideways: 0.0, rotation }
+        Displacement2 { forward, sideways, rotation }
     }
 
     /// The wheel travels that a robot believes to make for this move.
@@ -106,11 +124,20 @@ impl Move {
         drive.wheel_travel(d.forward, d.rotation)
     }
 
+    /// How far the wheel rolls that rolls farthest \[m\].
+    pub fn farthest(&self, drive: &Drive) -> f64 {
+        match drive.rollers() {
+            Some(rollers) => rollers.ways_of(&self.displacement()).into_iter().map(f64::abs).fold(0.0, f64::max),
+            None => self.wheel_travel(drive).farthest(),
+        }
+    }
+
     fn mirrored(self) -> Move {
         match self {
             Move::Straight { length } => Move::Straight { length },
             Move::Turn { angle } => Move::Turn { angle: -angle },
             Move::Arc { radius, angle } => Move::Arc { radius, angle: -angle },
+            Move::Slide { ahead, left } => Move::Slide { ahead, left: -left },
         }
     }
 }
@@ -126,6 +153,8 @@ pub struct Shape {
     pub parameters: &'static [Parameter],
     /// Whether it ends at START, heading as it began; where it goes round, after whole turns.
     pub closed: bool,
+    /// Whether it is driven through: the robot does not stop between its moves.
+    pub flows: bool,
     moves: fn(&[f64]) -> Result<Vec<Move>, PathError>,
 }
 
@@ -230,14 +259,46 @@ impl Path {
         }
     }
 
-    /// Whether a robot can make all of its moves: one that cannot turn on the spot needs arcs.
+    /// How each of its moves is spread over time, and the rest after it \[s\].
+    pub fn profiles(&self, direction: Direction, drive: &Drive) -> Vec<(Trapezoid, f64)> {
+        let farthest = self.moves(direction).into_iter().map(|one| one.farthest(drive));
+        if !self.shape.flows {
+            return farthest.map(|way| (self.speed.over(way), self.speed.pause())).collect();
+        }
+        let ways: Vec<f64> = farthest.collect();
+        let all: f64 = ways.iter().sum();
+        let (whole, mut done) = (self.speed.over(all), 0.0);
+        let part = |(index, way): (usize, &f64)| {
+            let from = done;
+            done = if index + 1 == ways.len() { 1.0 } else { from + way / all };
+            (whole.between(from, done), if index + 1 == ways.len() { self.speed.pause() } else { 0.0 })
+        };
+        ways.iter().enumerate().map(part).collect()
+    }
+
+    /// Whether a robot can make all of its moves: one that cannot turn on the spot needs arcs, and only some move sideways.
     pub fn suits(&self, robot: &Robot) -> bool {
-        self.moves.iter().map(Move::displacement).all(|d| robot.counting(d.forward, d.rotation).is_some())
+        let can = |d: Displacement2| robot.counting(d.forward, d.rotation).is_some();
+        (!self.slides() || robot.drive.kind().moves_sideways()) && self.moves.iter().map(Move::displacement).all(can)
+    }
+
+    /// Whether the robot moves sideways on it.
+    pub fn slides(&self) -> bool {
+        self.first_slide().is_some()
+    }
+
+    /// The first of its moves in which the robot moves sideways, from 0.
+    pub fn first_slide(&self) -> Option<usize> {
+        self.moves.iter().position(|m| m.displacement().sideways != 0.0)
     }
 
     /// Length travelled by the axle's centre \[m\].
     pub fn length(&self) -> f64 {
-        self.moves.iter().map(|m| m.displacement().forward.abs()).sum()
+        let length = |d: Displacement2| match d.sideways {
+            0.0 => d.forward.abs(),
+            sideways => libm::hypot(d.forward, sideways),
+        };
+        self.moves.iter().map(Move::displacement).map(length).sum()
     }
 
     /// Where a robot without errors ends, seen from START.

@@ -9,6 +9,7 @@ mod diffusion;
 mod pieces;
 mod record;
 mod recorded_test;
+mod rolling;
 mod rolls;
 mod sampling;
 mod trucks;
@@ -16,7 +17,7 @@ mod truth;
 mod way;
 
 use crate::dataset::ReturnError;
-use crate::drive::{DriveError, Robot, WheelTravel};
+use crate::drive::{DriveError, DriveKind, Robot, WheelTravel};
 use crate::effect::{Sight, Stretch, TestKind};
 use crate::engine::{
     EngineError, Instructions, Integrator, Method, Motion, Segment, TickGeometry, UNITS_PER_TICK, Update, WheelLine,
@@ -32,6 +33,7 @@ pub use recorded_test::{is_extended, record_test};
 pub use truth::Truth;
 
 use course::Rest;
+use rolling::Rolling;
 use sampling::SampledMoves;
 use trucks::Convoys;
 
@@ -52,12 +54,35 @@ pub enum SimulateError {
         /// Its ticks.
         ticks: f64,
     },
+    /// The same of one of several wheels with rollers.
+    #[error(
+        "the counter of wheel {wheel} makes {ticks:.3e} ticks in move {index} of the path; at most 2^30 - 2 are possible"
+    )]
+    TooManyTicksOfWheel {
+        /// The wheel, from 1.
+        wheel: usize,
+        /// The move, from 1.
+        index: usize,
+        /// Its ticks.
+        ticks: f64,
+    },
     /// A turn that the drive cannot make.
     #[error(
         "a robot with drive = \"{drive}\" cannot turn as tightly as in move {index} of the path; give a path of arcs, as \
          shape = \"rounded_rectangle\""
     )]
     TooTight {
+        /// Kind of the drive.
+        drive: &'static str,
+        /// The move, from 1.
+        index: usize,
+    },
+    /// A move to the side of a drive that cannot make one.
+    #[error(
+        "a robot with drive = \"{drive}\" cannot move sideways, as it does in move {index} of the path; {}",
+        sideways()
+    )]
+    Sideways {
         /// Kind of the drive.
         drive: &'static str,
         /// The move, from 1.
@@ -85,6 +110,16 @@ pub enum SimulateError {
         /// \[Hz\]
         value: f64,
     },
+}
+
+/// The drives that move sideways, in words.
+fn sideways() -> String {
+    let names: Vec<String> = DriveKind::ALL
+        .iter()
+        .filter(|kind| kind.moves_sideways())
+        .map(|kind| format!("drive = \"{}\"", kind.name()))
+        .collect();
+    format!("{} can", names.join(" or "))
 }
 
 /// Position of the wheels within a tick at START and at every stop.
@@ -156,6 +191,9 @@ pub struct Simulator {
     computer: Computer,
     /// The plan of a drive of two trucks, which replaces everything else.
     convoys: Option<Convoys>,
+    /// The wheels of a base on rollers, whose counters are more than two.
+    rolling: Option<Rolling>,
+    odometry: Odometry,
     phase: Phase,
     phases: Stream,
     segments: Vec<Segment>,
@@ -167,11 +205,12 @@ impl Simulator {
     pub fn new(robot: &Robot, path: &Path, odometry: Odometry, phase: Phase) -> Result<Simulator, SimulateError> {
         let per_tick = robot.metres_per_tick();
         let geometry = TickGeometry::new(per_tick.left, per_tick.right, robot.drive.wheelbase())?;
+        let [cw, ccw] = [Course::new(robot, path, Direction::Cw)?, Course::new(robot, path, Direction::Ccw)?];
         let convoys = Convoys::new(robot, path);
         if robot.drive.kind().has_trucks() && convoys.is_none() {
             return Err(SimulateError::Unsupported { drive: robot.drive.kind().name(), what: "paths with arcs" });
         }
-        let [cw, ccw] = [Course::new(robot, path, Direction::Cw)?, Course::new(robot, path, Direction::Ccw)?];
+        let rolling = Rolling::new(robot, path, [&cw, &ccw])?;
         let differential = robot.drive.kind().has_axle_wheels();
         let computer = match odometry {
             Odometry::Continuous => Computer::Continuous,
@@ -197,6 +236,8 @@ impl Simulator {
             courses: [cw, ccw],
             computer,
             convoys,
+            rolling,
+            odometry,
             phase,
             phases: Stream::new(0, 0, 0),
             segments: Vec::new(),
@@ -251,6 +292,11 @@ impl Simulator {
             }
             return;
         }
+        if let Some(rolling) = self.rolling.take() {
+            self.test_rolling(&rolling, truth, test, returned);
+            self.rolling = Some(rolling);
+            return;
+        }
         let runs = returned.each_ref().map(|returned| returned.len());
         self.command(runs);
         self.compute(runs);
@@ -265,7 +311,7 @@ impl Simulator {
                         Computer::Counters => leg.rolled(&self.segments[self.place(runs, direction, run, index)].line),
                         _ => self.per_tick.of(&self.segments[self.place(runs, direction, run, index)].line),
                     };
-                    truth.begin(Stretch { index, direction, test, travel }, leg);
+                    truth.begin(Stretch { index, direction, test, travel, left: leg.left }, leg);
                     truth.advance(1.0);
                 }
             }

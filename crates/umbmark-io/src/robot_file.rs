@@ -39,7 +39,7 @@ impl RobotFile {
         let robot =
             root.need("robot", "a table [robot] with wheelbase_m, wheel_diameter_m and ticks_per_revolution")?;
         let robot = read_robot_table(&robot.table("[robot]".into())?)?;
-        let path = root.get("path").map(|path| read_path_table(&path.table("[path]".into())?)).transpose()?;
+        let path = root.get("path").map(|path| read_path_table(&path.table("[path]".into())?, &robot)).transpose()?;
         let reference = root.get("reference").map(|entry| read_reference(&entry.table("[reference]".into())?));
         Ok(RobotFile { robot, path, reference: reference.transpose()?.unwrap_or_default() })
     }
@@ -129,7 +129,7 @@ fn read_bits(table: &Table) -> Result<Option<u32>, DatasetError> {
     Ok(Some(bits as u32))
 }
 
-fn read_path_table(table: &Table) -> Result<Path, DatasetError> {
+fn read_path_table(table: &Table, robot: &Robot) -> Result<Path, DatasetError> {
     let allowed = format!("one of {}", SHAPES.iter().map(|shape| shape.name).collect::<Vec<_>>().join(", "));
     let entry = table.need("shape", "e.g. shape = \"square\"")?;
     let word = entry.word(&allowed)?;
@@ -150,14 +150,22 @@ fn read_path_table(table: &Table) -> Result<Path, DatasetError> {
         shape.parameters.iter().map(|p| table.number(p)).collect::<Result<Vec<_>, _>>()?
     };
     let speed = read_speed(table)?;
-    Path::new(shape, &values, speed).map_err(|error| match (&error, table.get(POINTS)) {
+    let path = Path::new(shape, &values, speed).map_err(|error| match (&error, table.get(POINTS)) {
         (PathError::Waypoint { index, .. }, Some(points)) => points.wrong(
             "two or more points of at most 1e6 m either way, each another than the one before",
             &format!("look at point {index}"),
         ),
         (_, Some(points)) => points.wrong(&error.to_string(), ""),
         (_, None) => entry.wrong(&error.to_string(), ""),
-    })
+    })?;
+    let drive = robot.drive.kind();
+    if path.slides() && !drive.moves_sideways() {
+        let others = SHAPES.iter().filter(|shape| !shape.usual().slides()).map(|shape| shape.name);
+        let allowed =
+            format!("one of {} for a robot with drive = \"{}\"", others.collect::<Vec<_>>().join(", "), drive.name());
+        return Err(entry.wrong(&allowed, "it does not move sideways"));
+    }
+    Ok(path)
 }
 
 fn read_speed(table: &Table) -> Result<SpeedProfile, DatasetError> {

@@ -38,6 +38,12 @@ impl WheelTravel {
         0.5 * (self.left.abs() + self.right.abs())
     }
 
+    /// Way of the faster wheel \[m\], ahead or back.
+    #[inline]
+    pub fn farthest(&self) -> f64 {
+        self.left.abs().max(self.right.abs())
+    }
+
     /// Travel that makes the middle of an axle with this wheelbase \[m\] advance `forward` \[m\] while the body turns by `rotation`
     /// \[rad\].
     #[inline]

@@ -46,8 +46,13 @@ impl PartialEq for Path {
 impl Path {
     /// A robot.toml with this path.
     fn file(&self) -> String {
-        RobotFile::new(drive::Robot::labmate(), Some(self.0.clone())).text()
+        RobotFile::new(any_robot(), Some(self.0.clone())).text()
     }
+}
+
+/// A robot that can drive every path: a file has one, and which does not matter to the path.
+fn any_robot() -> drive::Robot {
+    drive::Robot { drive: drive::DriveKind::Mecanum.usual(), ..drive::Robot::labmate() }
 }
 
 #[pymethods]
@@ -57,8 +62,7 @@ impl Path {
     fn new(shape: &str, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Path> {
         let mut path = Table::from_iter([("shape".to_owned(), Value::String(shape.to_owned()))]);
         path.extend(keys::table(keys)?);
-        // A file has a robot; which one does not matter to the path.
-        let robot = RobotFile::new(drive::Robot::labmate(), None).text();
+        let robot = RobotFile::new(any_robot(), None).text();
         let file = format!("{}\n{robot}", Table::from_iter([("path".to_owned(), Value::Table(path))]));
         let file = RobotFile::parse("Path", &file).map_err(|error| keys::refused(&error))?;
         Ok(Path(file.path.unwrap_or_else(path::Path::umbmark)))

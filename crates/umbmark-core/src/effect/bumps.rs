@@ -23,7 +23,7 @@ impl Effect for Bumps {
                 "1/m",
                 0.1,
                 (0.0, 1000.0),
-                "bumps per metre rolled, of each wheel",
+                "bumps per metre rolled, of each wheel; of a base on rollers, of the wheels on either side of its course",
             ),
             Parameter { flag: "random-bump-height", ..HEIGHT },
             Parameter { flag: "random-bump-wheel-radius", ..WHEEL_RADIUS },
@@ -40,7 +40,8 @@ impl Effect for Bumps {
                  for wheel radii of 66 to 75 mm",
     };
 
-    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential).and(DriveKind::Synchro);
+    const DRIVES: DriveKinds =
+        DriveKinds::of(DriveKind::Differential).and(DriveKind::Synchro).and(DriveKind::Mecanum).and(DriveKind::Omni3);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let lost = lost_travel(p[1], p[2], p[3]);
@@ -57,8 +58,8 @@ impl BumpLaw for Bumps {
         if p[0] == 0.0 {
             return;
         }
-        let lost = lost_travel(p[1], p[2], p[3]);
-        for (wheel, rolled) in [(Wheel::Left, stretch.travel.left), (Wheel::Right, stretch.travel.right)] {
+        let (lost, across) = (lost_travel(p[1], p[2], p[3]), stretch.across());
+        for (wheel, rolled) in [(Wheel::Left, across.left), (Wheel::Right, across.right)] {
             let expected = p[0] * rolled.abs();
             let mut at = exponential(stream) / expected;
             while at < 1.0 {
@@ -178,6 +179,7 @@ mod tests {
             direction: Direction::Ccw,
             test: TestKind::Systematic,
             travel: WheelTravel { left: -2.0, right: 2.0 },
+            left: 0.0,
         };
         let (mut met, mut stream) = (Vec::new(), Stream::new(1, 2, 3));
         let repeats = 20_000;

@@ -78,9 +78,10 @@ impl BumpLaw for PlacedBumps {
         if stretch.test != TestKind::Bumps || stretch.index != 0 {
             return;
         }
+        let across = stretch.across();
         let (wheel, rolled) = match stretch.direction {
-            Direction::Ccw => (Wheel::Left, stretch.travel.left),
-            Direction::Cw => (Wheel::Right, stretch.travel.right),
+            Direction::Ccw => (Wheel::Left, across.left),
+            Direction::Cw => (Wheel::Right, across.right),
         };
         let lost = lost_travel(p[1], p[2], p[3]).copysign(rolled);
         let count = p[0].round();
@@ -97,7 +98,7 @@ mod tests {
     #[test]
     fn ten_bumps_lie_evenly_on_the_first_leg_under_the_inside_wheel_of_the_extended_test_only() {
         let met = |index, direction, test| {
-            let stretch = Stretch { index, direction, test, travel: WheelTravel { left: 4.0, right: 4.0 } };
+            let stretch = Stretch { index, direction, test, travel: WheelTravel { left: 4.0, right: 4.0 }, left: 0.0 };
             let mut met = Vec::new();
             PlacedBumps::bumps(&[10.0, 0.01, 0.075, 0.0, 0.0], &stretch, &mut Stream::new(0, 0, 0), &mut met);
             met

@@ -489,7 +489,7 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
     measured(values, &mut stream, &mut found);
     let mut met = Vec::new();
     let long = WheelTravel { left: 300.0, right: 500.0 };
-    let stretch = Stretch { index: 0, direction: Direction::Ccw, test: TestKind::Bumps, travel: long };
+    let stretch = Stretch { index: 0, direction: Direction::Ccw, test: TestKind::Bumps, travel: long, left: 0.0 };
     bumps(values, &stretch, &mut stream, &mut met);
     let found = [
         (Changes::WHEELS, rolled != [travel; 2]),

@@ -23,7 +23,7 @@ impl Effect for WheelNoise {
             (0.0, 1.0),
             "square root of the variance of a wheel's travel per metre",
         )],
-        equation: "var s_w = k² |s_w|, independent along the way and between the wheels",
+        equation: "var s_w = k² |s_w|, independent along the way and between the wheels; of a base on rollers, between the two sides of its course",
         physics: "Small slips, grains of dirt and unevenness add up like a random walk. On parquet, 4.0e-4 and 5.8e-4 m^0.5 were \
                   measured; 1e-3 gives the paper's scatter.",
         signature: "Only the scatter changes: the variance of the heading grows by 2 k²/b² per metre, and the scatter of the position \

@@ -250,7 +250,7 @@ fn at_start(link: f64) -> [Pose2; 2] {
     [Pose2::IDENTITY, Pose2::new(-link, 0.0, 0.0)]
 }
 
-/// What both trucks do for a move of the vehicle, one after the other; `None` for arcs.
+/// What both trucks do for a move of the vehicle, one after the other; `None` for arcs and for moves to the side.
 fn maneuvers(one: Move, link: f64) -> Option<Vec<[Displacement2; 2]>> {
     let motion = |forward: f64, rotation: f64| Displacement2 { forward, sideways: 0.0, rotation };
     match one {
@@ -264,7 +264,7 @@ fn maneuvers(one: Move, link: f64) -> Option<Vec<[Displacement2; 2]>> {
                 [motion(0.0, -across), motion(0.0, across)],
             ])
         }
-        Move::Arc { .. } => None,
+        Move::Arc { .. } | Move::Slide { .. } => None,
     }
 }
 

@@ -52,7 +52,11 @@ pub(crate) fn end_poses(data: &Dataset, robot: &Robot) -> Result<Vec<Drive>, Fit
 
 /// Refuses a path that the robot is known to have driven and cannot drive.
 fn check_path(data: &Dataset, robot: &Robot) -> Result<(), FitError> {
+    let drive = robot.drive.kind();
     match &data.path {
+        Some(path) if path.slides() && !drive.moves_sideways() => {
+            Err(FitError::Sideways { drive: drive.name(), shape: path.shape().name })
+        }
         Some(path) if !robot.drive.kind().has_tick_logs() && !path.suits(robot) => {
             Err(FitError::Path { drive: robot.drive.kind().name(), shape: path.shape().name })
         }

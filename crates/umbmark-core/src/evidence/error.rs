@@ -21,6 +21,14 @@ pub enum FitError {
         /// The shape of the path.
         shape: &'static str,
     },
+    /// A path with moves to the side, of a drive that cannot make them.
+    #[error("a robot with drive = \"{drive}\" cannot drive the path, shape = \"{shape}\": it does not move sideways")]
+    Sideways {
+        /// The kind of the drive.
+        drive: &'static str,
+        /// The shape of the path.
+        shape: &'static str,
+    },
     /// No run with an observation that can be predicted.
     #[error(
         "none of {runs} runs can be predicted: each needs a return error and a path in robot.toml, \

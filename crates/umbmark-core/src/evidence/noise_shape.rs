@@ -3,7 +3,8 @@
 pub(crate) mod trucks;
 
 use crate::drive::{DifferentialDrive, WheelTravel};
-use crate::geometry::Pose2;
+use crate::effect::{across, course_angle};
+use crate::geometry::{Displacement2, Pose2};
 use crate::replay::Track;
 use nalgebra::{Matrix3, Vector3};
 
@@ -14,27 +15,31 @@ const PIECES: usize = 16;
 ///
 /// Σ = ∫ g_L g_Lᵀ |ds_L| + g_R g_Rᵀ |ds_R|, where g is the shift of the end pose by a unit of wheel travel at the pose q on the way:
 /// half of it along the heading, and a turn ±1/b of the rest of the path about q. To first order, along the nominal path.
-/// Source: the noise model of Chong & Kleeman, ICRA 1997. Of two trucks with a link, that of the front one.
+/// Source: the noise model of Chong & Kleeman, ICRA 1997. A base that moves sideways is one whose axle stands across its course. Of two trucks with a link, that of the front one.
 pub(crate) fn end_covariance(track: &Track, drive: &DifferentialDrive) -> Matrix3<f64> {
     if let Some(convoy) = track.convoy() {
         return trucks::gathered(convoy, drive, 0..convoy.steps().len());
     }
-    let displaced =
-        |pose: Pose2, travel: &WheelTravel, share: f64| pose.moved(&drive.displacement(&travel.scaled(share)));
-    let end = track.travel().iter().fold(Pose2::IDENTITY, |pose, travel| displaced(pose, travel, 1.0));
+    let displaced = |pose: Pose2, (travel, left): &(WheelTravel, f64), share: f64| {
+        let motion = drive.displacement(&travel.scaled(share));
+        pose.moved(&Displacement2 { sideways: left * share, ..motion })
+    };
+    let pieces = || track.travel().iter().zip(track.contexts()).map(|(travel, at)| (*travel, at.aside.way));
+    let end = pieces().fold(Pose2::IDENTITY, |pose, piece| displaced(pose, &piece, 1.0));
     let turn = 1.0 / drive.wheelbase();
     let (mut sum, mut pose) = (Matrix3::zeros(), Pose2::IDENTITY);
-    for travel in track.travel() {
+    for moved in pieces() {
+        let (rolled, aside) = (across(&moved.0, moved.1), course_angle(&moved.0, moved.1));
         for piece in 0..PIECES {
-            let at = displaced(pose, travel, (piece as f64 + 0.5) / PIECES as f64);
-            let (sine, cosine) = libm::sincos(at.heading);
+            let at = displaced(pose, &moved, (piece as f64 + 0.5) / PIECES as f64);
+            let (sine, cosine) = libm::sincos(at.heading + aside);
             let along = 0.5 * Vector3::new(cosine, sine, 0.0);
             let about = turn * Vector3::new(at.y - end.y, end.x - at.x, 1.0);
-            for (shift, rolled) in [(along - about, travel.left), (along + about, travel.right)] {
+            for (shift, rolled) in [(along - about, rolled.left), (along + about, rolled.right)] {
                 sum += shift * shift.transpose() * (rolled.abs() / PIECES as f64);
             }
         }
-        pose = displaced(pose, travel, 1.0);
+        pose = displaced(pose, &moved, 1.0);
     }
     sum
 }

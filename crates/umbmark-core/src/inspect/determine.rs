@@ -299,8 +299,9 @@ impl<'a> Seen<'a> {
     /// Travel and time of each piece of a path.
     fn of_path(&self, path: &Path, direction: Direction) -> Vec<(WheelTravel, Aside, f64)> {
         let pieces = |m: crate::path::Move| {
-            let travel = m.wheel_travel(&self.robot.drive).scaled(1.0 / PIECES as f64);
-            std::iter::repeat_n((travel, Aside::NONE, 1.0), PIECES)
+            let share = 1.0 / PIECES as f64;
+            let (travel, way) = (m.wheel_travel(&self.robot.drive).scaled(share), share * m.displacement().sideways);
+            std::iter::repeat_n((travel, Aside { way, speed: way, ..Aside::NONE }, 1.0), PIECES)
         };
         path.moves(direction).into_iter().flat_map(pieces).collect()
     }

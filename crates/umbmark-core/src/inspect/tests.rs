@@ -241,6 +241,11 @@ fn robot_heading(data: &Dataset) {
 
 /// Whether E_d, E_b and E_s can be had from return errors on a path.
 fn determined(path: Path, directions: &[Direction], heading: bool) -> [bool; 3] {
+    determined_of(&Robot::labmate(), path, directions, heading)
+}
+
+/// The same of the first effects of another robot.
+fn determined_of(robot: &Robot, path: Path, directions: &[Direction], heading: bool) -> [bool; 3] {
     let returned = ReturnError { x: 0.0, y: 0.0, heading: heading.then_some(0.0) };
     let run = |direction: &Direction| Run {
         name: String::new(),
@@ -252,6 +257,7 @@ fn determined(path: Path, directions: &[Direction], heading: bool) -> [bool; 3] 
     };
     let mut data = dataset(directions.iter().map(run).collect());
     data.path = Some(path);
+    data.robot = Some(robot.clone());
     let answers = data.inspect().determined;
     [answers[0].yes, answers[1].yes, answers[2].yes]
 }
@@ -270,6 +276,26 @@ fn what_returns_can_determine_depends_on_path_directions_and_headings() {
     assert_eq!(determined(path(&FIGURE_EIGHT, &[2.0]), cw, true), [true, true, false]);
     assert_eq!(determined(path(&CIRCLE, &[2.0, 1.0]), both, true), [true, true, false]);
     assert_eq!(determined(path(&CIRCLE, &[2.0, 0.5]), both, true), [true, true, true]);
+}
+
+#[test]
+fn what_returns_of_a_base_on_rollers_can_determine_depends_on_how_it_goes_round() {
+    use crate::drive::DriveKind;
+    use crate::path::{FIXED_SQUARE, SIDEWAYS_SQUARE, SLIDE, SQUARE};
+    for kind in [DriveKind::Mecanum, DriveKind::Omni3] {
+        let robot = Robot { drive: kind.usual(), ..Robot::labmate() };
+        for (shape, expected) in [
+            (&SQUARE, [true, true, false]),
+            // Without turns, nothing shows how far the wheels stand apart; without ways ahead, nothing bends legs.
+            (&FIXED_SQUARE, [true, false, false]),
+            (&SIDEWAYS_SQUARE, [false, true, false]),
+            (&SLIDE, [false, false, true]),
+        ] {
+            let path = Path::new(shape, &[4.0], SpeedProfile::default()).unwrap();
+            let found = determined_of(&robot, path, &Direction::BOTH, true);
+            assert_eq!(found, expected, "{} {}", kind.name(), shape.name);
+        }
+    }
 }
 
 /// A log of a drive along a straight of 6 m, tracked all the way, which wanders by some hundredths of a radian.

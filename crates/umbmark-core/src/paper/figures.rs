@@ -136,7 +136,8 @@ fn with_bumps(model: &Model, place: impl Fn(usize) -> f64, lost: f64) -> Result<
     truth.start(Direction::Ccw);
     let course = Course::new(model.robot(), &Path::umbmark(), Direction::Ccw)?;
     for (index, leg) in course.legs.iter().enumerate() {
-        let stretch = Stretch { index, direction: Direction::Ccw, test: TestKind::Systematic, travel: leg.travel };
+        let stretch =
+            Stretch { index, direction: Direction::Ccw, test: TestKind::Systematic, travel: leg.travel, left: 0.0 };
         truth.begin(stretch, leg);
         for bump in (0..10).filter(|_| index == 0) {
             truth.place(Bump { at: place(bump), wheel: Wheel::Left, lost });

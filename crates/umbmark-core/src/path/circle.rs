@@ -11,6 +11,7 @@ pub static SHAPE: Shape = Shape {
     about: "a circle, driven round one or more times without stopping",
     parameters: &[Parameter::shape("radius_m", "radius", "m", 1.0, SIDE_BOUNDS, "radius of the circle"), TURNS],
     closed: true,
+    flows: false,
     moves: |values| Ok(vec![Move::Arc { radius: values[0], angle: TAU * values[1] }]),
 };
 

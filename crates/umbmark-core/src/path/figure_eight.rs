@@ -12,5 +12,6 @@ pub static SHAPE: Shape = Shape {
     about: "a full circle to one side, then a full circle to the other, crossing at START",
     parameters: &[Parameter::shape("radius_m", "radius", "m", 2.0, SIDE_BOUNDS, "radius of each circle")],
     closed: true,
+    flows: false,
     moves: |values| Ok([TAU, -TAU].map(|angle| Move::Arc { radius: values[0], angle }).to_vec()),
 };

@@ -13,5 +13,6 @@ pub static SHAPE: Shape = Shape {
         Parameter::shape("width_m", "width", "m", 4.0, SIDE_BOUNDS, "length of the second leg"),
     ],
     closed: true,
+    flows: false,
     moves: |values| Ok(sides(&[values[0], values[1], values[0], values[1]])),
 };

@@ -16,6 +16,7 @@ pub static SHAPE: Shape = Shape {
         side("corner_radius_m", "corner-radius", 1.0, "radius of the corners"),
     ],
     closed: true,
+    flows: false,
     moves: |values| {
         let [length, width, radius] = [values[0], values[1], values[2]];
         let most = 0.5 * length.min(width);

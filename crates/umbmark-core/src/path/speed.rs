@@ -60,8 +60,20 @@ impl SpeedProfile {
         let ramp = (self.speed / self.acceleration).min((travel / self.acceleration).sqrt());
         let top = ramp * self.acceleration;
         let cruise = if top > 0.0 { (travel - top * ramp) / top } else { 0.0 };
-        Trapezoid { ramp, cruise: cruise.max(0.0) }
+        Trapezoid { ramp, cruise: cruise.max(0.0), part: None }
     }
+}
+
+/// A part of a longer move that is driven through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Part {
+    /// Share of the whole travel done when it begins.
+    from: f64,
+    /// Share of the whole travel that it is.
+    span: f64,
+    /// When it begins \[s\], and how long it takes \[s\].
+    begins: f64,
+    lasts: f64,
 }
 
 /// Fraction of a move's travel done as a function of time: quadratic, linear, quadratic.
@@ -71,43 +83,77 @@ pub struct Trapezoid {
     pub ramp: f64,
     /// Duration at constant speed \[s\].
     pub cruise: f64,
+    /// Which part of such a move it is, where it is not all of it: it then does not begin and end at rest.
+    part: Option<Part>,
 }
 
 impl Trapezoid {
+    /// The part of a whole move from one share of its travel to another.
+    pub fn between(self, from: f64, to: f64) -> Trapezoid {
+        let [begins, ends] = [from, to].map(|share| self.time_of_whole(share));
+        Trapezoid { part: Some(Part { from, span: to - from, begins, lasts: ends - begins }), ..self }
+    }
+
     /// \[s\]
     pub fn duration(&self) -> f64 {
+        self.part.map_or(self.whole(), |part| part.lasts)
+    }
+
+    fn whole(&self) -> f64 {
         2.0 * self.ramp + self.cruise
     }
 
     /// Share of the travel done at `time` \[s\] after the start: 0 before it, 1 after the end.
     pub fn fraction(&self, time: f64) -> f64 {
+        match self.part {
+            None => self.fraction_of_whole(time),
+            Some(part) if time >= part.lasts => 1.0,
+            Some(part) => ((self.fraction_of_whole(part.begins + time) - part.from) / part.span).clamp(0.0, 1.0),
+        }
+    }
+
+    fn fraction_of_whole(&self, time: f64) -> f64 {
         let total = self.ramp + self.cruise;
         if time <= 0.0 {
             0.0
-        } else if time >= self.duration() {
+        } else if time >= self.whole() {
             1.0
         } else if time < self.ramp {
             0.5 * time * time / self.ramp / total
         } else if time <= total {
             (time - 0.5 * self.ramp) / total
         } else {
-            let left = self.duration() - time;
+            let left = self.whole() - time;
             1.0 - 0.5 * left * left / self.ramp / total
         }
     }
 
     /// When a share of the travel in [0, 1] is done \[s\]: the inverse of [`Trapezoid::fraction`].
     pub fn time(&self, fraction: f64) -> f64 {
+        match self.part {
+            None => self.time_of_whole(fraction),
+            Some(part) => self.time_of_whole(part.from + part.span * fraction) - part.begins,
+        }
+    }
+
+    fn time_of_whole(&self, fraction: f64) -> f64 {
         let total = self.ramp + self.cruise;
         let (fraction, mirrored) = if fraction > 0.5 { (1.0 - fraction, true) } else { (fraction, false) };
         let done = fraction * total;
         let time = if done < 0.5 * self.ramp { (2.0 * done * self.ramp).sqrt() } else { done + 0.5 * self.ramp };
-        if mirrored { self.duration() - time } else { time }
+        if mirrored { self.whole() - time } else { time }
     }
 
     /// Share of the travel made per second at `time` \[1/s\].
     pub fn rate(&self, time: f64) -> f64 {
-        let edge = time.min(self.duration() - time).max(0.0);
+        match self.part {
+            None => self.rate_of_whole(time),
+            Some(part) => self.rate_of_whole(part.begins + time) / part.span,
+        }
+    }
+
+    fn rate_of_whole(&self, time: f64) -> f64 {
+        let edge = time.min(self.whole() - time).max(0.0);
         let ramped = if self.ramp > 0.0 { (edge / self.ramp).min(1.0) } else { 0.0 };
         let total = self.ramp + self.cruise;
         if total > 0.0 { ramped / total } else { 0.0 }
@@ -154,6 +200,25 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn parts_of_a_move_follow_each_other_at_its_speed() {
+        let whole = SpeedProfile::new(0.5, 0.25, 1.0).unwrap().over(4.0);
+        let (mut begins, shares) = (0.0, [0.0, 0.05, 0.3, 0.8, 1.0]);
+        for pair in shares.windows(2) {
+            let (part, span) = (whole.between(pair[0], pair[1]), pair[1] - pair[0]);
+            for k in 0..=20 {
+                let time = part.duration() * f64::from(k) / 20.0;
+                let expected = (whole.fraction(begins + time) - pair[0]) / span;
+                assert!((part.fraction(time) - expected).abs() < 1e-12, "{pair:?} {time}");
+                assert!((part.rate(time) * span - whole.rate(begins + time)).abs() < 1e-12, "{pair:?} {time}");
+                assert!((part.time(part.fraction(time)) - time).abs() < 1e-9, "{pair:?} {time}");
+            }
+            assert_eq!((part.fraction(-1.0), part.fraction(part.duration() + 1.0)), (0.0, 1.0));
+            begins += part.duration();
+        }
+        assert!((begins - whole.duration()).abs() < 1e-12);
     }
 
     #[test]

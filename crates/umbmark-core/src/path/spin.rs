@@ -10,5 +10,6 @@ pub static SHAPE: Shape = Shape {
     about: "one or more full turns on the spot",
     parameters: &[TURNS],
     closed: true,
+    flows: false,
     moves: |values| Ok(vec![Move::Turn { angle: TAU * values[0] }]),
 };

@@ -12,6 +12,7 @@ pub static SHAPE: Shape = Shape {
     about: "four straight legs, each followed by a quarter turn on the spot: the path of UMBmark",
     parameters: &[Parameter::shape("side_m", "side", "m", 4.0, SIDE_BOUNDS, "length of a side")],
     closed: true,
+    flows: false,
     moves: |values| Ok(sides(&[values[0]; 4])),
 };
 

@@ -10,5 +10,6 @@ pub static SHAPE: Shape = Shape {
     about: "one straight leg, open: the length shows the scale, the heading the wheel-diameter ratio",
     parameters: &[Parameter::shape("length_m", "length", "m", 10.0, SIDE_BOUNDS, "length of the leg")],
     closed: false,
+    flows: false,
     moves: |values| Ok(vec![Move::Straight { length: values[0] }]),
 };

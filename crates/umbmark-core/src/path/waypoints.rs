@@ -10,6 +10,7 @@ pub static SHAPE: Shape = Shape {
     about: "straight legs from START through a list of points, `points_m = [[x, y], ..]`, turning on the spot at each",
     parameters: &[],
     closed: false,
+    flows: false,
     moves,
 };
 

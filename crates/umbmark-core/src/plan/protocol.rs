@@ -96,9 +96,10 @@ fn floor(path: &Path) -> [f64; 3] {
     const PIECES: usize = 16;
     let (mut pose, mut reach) = (Pose2::IDENTITY, [0.0_f64; 3]);
     for whole in path.moves(Direction::Ccw).iter().map(Move::displacement) {
-        let [forward, rotation] = [whole.forward, whole.rotation].map(|all| all / PIECES as f64);
+        let [forward, sideways, rotation] =
+            [whole.forward, whole.sideways, whole.rotation].map(|all| all / PIECES as f64);
         for _ in 0..PIECES {
-            pose = pose.moved(&Displacement2 { forward, rotation, ..Displacement2::NONE });
+            pose = pose.moved(&Displacement2 { forward, sideways, rotation });
             reach = [reach[0].min(pose.x), reach[1].max(pose.x), reach[2].max(pose.y.abs())];
         }
     }
@@ -107,8 +108,9 @@ fn floor(path: &Path) -> [f64; 3] {
 
 fn steps(setting: &Setting, order: Order, bumps: f64) -> Vec<String> {
     let [behind, ahead, beside] = floor(&setting.path);
-    let turns = setting.path.moves(Direction::Ccw);
-    let on_the_spot = turns.iter().filter(|m| matches!(m, Move::Turn { .. })).count();
+    let moves = setting.path.moves(Direction::Ccw);
+    let on_the_spot = moves.iter().filter(|m| matches!(m, Move::Turn { .. })).count();
+    let fixed = setting.path.slides() && moves.iter().all(|m| m.displacement().rotation == 0.0);
     let speed = setting.path.speed.values()[0];
     let back = if behind < -0.05 { format!(", {:.1} m behind", -behind) } else { String::new() };
     let heading = |yes: &str| if setting.with_heading { yes.to_owned() } else { String::new() };
@@ -129,6 +131,8 @@ fn steps(setting: &Setting, order: Order, bumps: f64) -> Vec<String> {
              its odometry puts START.",
             if on_the_spot > 0 {
                 format!(", with a stop before and after each of its {on_the_spot} turns on the spot")
+            } else if fixed {
+                ", with a stop at each corner and without turning".to_owned()
             } else {
                 String::new()
             }

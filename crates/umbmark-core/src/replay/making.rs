@@ -8,7 +8,7 @@ use crate::drive::{Robot, WheelTravel};
 use crate::effect::{Aside, RunContext, Sight};
 use crate::engine::Convoy;
 use crate::geometry::Pose2;
-use crate::path::{Direction, Path, Pieces, SpeedProfile};
+use crate::path::{Direction, Path, Pieces};
 use std::sync::Arc;
 
 impl Track {
@@ -67,29 +67,29 @@ impl Track {
     /// Where only return errors were measured, this is what the robot believed to drive: its controller stops each move
     /// when the odometry says so. Each move is one piece: for models that do not [vary](crate::effect::Model::varies).
     pub fn from_path(path: &Path, direction: Direction, robot: &Robot) -> Track {
-        Track::along_path(path, direction, robot, Pieces::whole, Observed::AtEnd)
+        Track::along_path(path, direction, robot, Pieces::in_one, Observed::AtEnd)
     }
 
     /// [`Track::from_path`] in pieces of a centimetre, for every model.
     pub fn in_pieces(path: &Path, direction: Direction, robot: &Robot) -> Track {
-        Track::along_path(path, direction, robot, Pieces::of, Observed::AtEnd)
+        Track::along_path(path, direction, robot, |pieces| pieces, Observed::AtEnd)
     }
 
     /// [`Track::in_pieces`] observed after every move.
     pub fn with_stops(path: &Path, direction: Direction, robot: &Robot) -> Track {
-        Track::along_path(path, direction, robot, Pieces::of, Observed::AtStops)
+        Track::along_path(path, direction, robot, |pieces| pieces, Observed::AtStops)
     }
 
     /// [`Track::in_pieces`] observed after every piece.
     pub fn watched(path: &Path, direction: Direction, robot: &Robot) -> Track {
-        Track::along_path(path, direction, robot, Pieces::of, Observed::Always)
+        Track::along_path(path, direction, robot, |pieces| pieces, Observed::Always)
     }
 
     fn along_path(
         path: &Path,
         direction: Direction,
         robot: &Robot,
-        cut: fn(&WheelTravel, &SpeedProfile) -> Pieces,
+        cut: fn(Pieces) -> Pieces,
         observed: Observed,
     ) -> Track {
         if let Some(convoy) = Convoy::new(robot, path, direction) {
@@ -99,18 +99,25 @@ impl Track {
         let mut progress = place.progress(robot, false);
         let mut track = Track::empty();
         let moves = path.moves(direction);
-        for (index, m) in moves.iter().enumerate() {
-            for piece in cut(&m.wheel_travel(&robot.drive), &path.speed) {
-                track.push(piece.travel, progress.piece(&piece.travel, piece.duration, piece.from, piece.to));
+        for (index, (m, (profile, pause))) in moves.iter().zip(path.profiles(direction, &robot.drive)).enumerate() {
+            let pieces = Pieces::along(&m.wheel_travel(&robot.drive), m.displacement().sideways, profile);
+            for piece in cut(pieces) {
+                let aside = Aside { way: piece.left, speed: piece.speed_left, ..Aside::NONE };
+                let at = progress.piece_aside(&piece.travel, aside, piece.duration, piece.from, piece.to);
+                track.push(piece.travel, at);
                 if observed == Observed::Always {
-                    track.observe(sight(progress.time(), piece.to, robot));
+                    let speed_aside = piece.speed_left;
+                    track.observe(Sight { speed_aside, ..sight(progress.time(), piece.to, robot) });
                 }
             }
-            if observed == Observed::AtStops || (observed == Observed::AtEnd && index + 1 == moves.len()) {
+            let stops = !path.shape().flows || index + 1 == moves.len();
+            if observed == Observed::AtStops && stops || (observed == Observed::AtEnd && index + 1 == moves.len()) {
                 let room = (observed == Observed::AtStops).then_some(Pose2::IDENTITY);
                 track.observe(Sight { time: progress.time(), room, ..Sight::default() });
             }
-            progress.piece(&WheelTravel::default(), path.speed.pause(), [0.0; 2], [0.0; 2]);
+            if pause > 0.0 || !path.shape().flows {
+                progress.piece(&WheelTravel::default(), pause, [0.0; 2], [0.0; 2]);
+            }
         }
         track
     }

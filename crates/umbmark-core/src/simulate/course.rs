@@ -11,6 +11,8 @@ use super::SimulateError;
 pub struct Leg {
     /// Believed wheel travel without quantisation \[m\].
     pub travel: WheelTravel,
+    /// Believed way to the left without quantisation \[m\].
+    pub left: f64,
     /// Counts at which both counters stop, cumulative from START.
     pub stop: [i64; 2],
     /// What the counters do.
@@ -39,23 +41,29 @@ impl Course {
     pub fn new(robot: &Robot, path: &Path, direction: Direction) -> Result<Course, SimulateError> {
         let (mut ideal, mut clock) = ([0.0, 0.0], 0.0);
         let mut legs = Vec::new();
-        for (index, one) in path.moves(direction).iter().enumerate() {
+        let drive = robot.drive.kind();
+        let moves = path.moves(direction);
+        for (index, (one, (profile, pause))) in moves.iter().zip(path.profiles(direction, &robot.drive)).enumerate() {
             let travel = one.wheel_travel(&robot.drive);
             let d = one.displacement();
+            if d.sideways != 0.0 && !drive.moves_sideways() {
+                return Err(SimulateError::Sideways { drive: drive.name(), index: index + 1 });
+            }
             let Some(counting) = robot.counting(d.forward, d.rotation) else {
-                return Err(SimulateError::TooTight { drive: robot.drive.kind().name(), index: index + 1 });
+                return Err(SimulateError::TooTight { drive: drive.name(), index: index + 1 });
             };
-            for (counter, gain) in robot.drive.kind().counters().into_iter().zip(counting.gain) {
-                let ticks = gain.abs();
+            for (counter, gain) in drive.counters().into_iter().zip(counting.gain) {
+                // The axle of a base on rollers has no counters of its own.
+                let ticks = if drive.moves_sideways() { 0.0 } else { gain.abs() };
                 // A margin of one tick, for the rounding of the stops and the rest position within a tick.
                 if !(ticks < MAX_TICKS as f64 - 2.0) {
                     return Err(SimulateError::TooManyTicks { counter, index: index + 1, ticks });
                 }
             }
             ideal = [ideal[0] + counting.gain[0], ideal[1] + counting.gain[1]];
-            let profile = path.speed.over(travel.left.abs().max(travel.right.abs()));
-            legs.push(Leg { travel, stop: ideal.map(|count| count.round() as i64), counting, begins: clock, profile });
-            clock += profile.duration() + path.speed.pause();
+            let stop = ideal.map(|count| count.round() as i64);
+            legs.push(Leg { travel, left: d.sideways, stop, counting, begins: clock, profile });
+            clock += profile.duration() + pause;
         }
         // The rotation of a move distinguishes legs, turns and arcs.
         let turn = |index: &usize| (legs[*index].travel.right - legs[*index].travel.left).abs();

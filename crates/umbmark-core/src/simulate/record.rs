@@ -1,12 +1,14 @@
 //! A recorded run: the readings of the encoders, and the true poses.
 
+use super::rolling::WheelsAtRest;
 use super::{Leg, Rest, SimulateError, Simulator, Truth, return_error};
 use crate::dataset::{ReferencePose, ReturnError, TickLog};
-use crate::drive::{Robot, Wheel, WheelTravel};
+use crate::drive::{MOST_WHEELS, Robot, Wheel};
 use crate::effect::{Sight, Stretch, TestKind};
-use crate::engine::{SampledOdometry, TickGeometry, UNITS_PER_TICK, Update, WheelLine};
+use crate::engine::{RollerLine, SampledOdometry, TickGeometry, UNITS_PER_TICK, Update, WheelLine};
 use crate::geometry::Pose2;
 use crate::path::Direction;
+use crate::run::dead_reckoning::computed_poses;
 
 /// A simulated run with all its data.
 #[derive(Clone, Debug)]
@@ -25,18 +27,11 @@ impl Recording {
     /// Turns readings of a drive's own counters into those of its axle's wheels, and computes the poses from these.
     fn reckon(&mut self, robot: &Robot) {
         let log = &mut self.log;
-        [log.left, log.right] = robot.axle_ticks([std::mem::take(&mut log.left), std::mem::take(&mut log.right)]);
-        log.rollers = robot.counters_of_rollers([&log.left, &log.right]);
-        if let Some(ticks) = robot.axle_ticks_of_rollers(&log.rollers) {
-            [log.left, log.right] = ticks;
-        }
-        let (per_tick, mut before, mut pose) = (robot.metres_per_tick(), [0.0; 2], Pose2::IDENTITY);
-        for (computed, (left, right)) in self.computed.iter_mut().zip(log.left.iter().zip(&log.right)) {
-            let [l, r] = before;
-            let travel = WheelTravel { left: (left - l) * per_tick.left, right: (right - r) * per_tick.right };
-            pose = pose.moved(&robot.drive.displacement(&travel));
-            (*computed, before) = (pose, [*left, *right]);
-        }
+        [log.left, log.right] = match robot.axle_ticks_of_rollers(&log.rollers) {
+            Some(ticks) => ticks,
+            None => robot.axle_ticks([std::mem::take(&mut log.left), std::mem::take(&mut log.right)]),
+        };
+        self.computed = computed_poses(log, robot);
     }
 }
 
@@ -75,12 +70,18 @@ impl Simulator {
         for sample in 0..=samples {
             let time = sample as f64 / rate;
             let log = &mut recording.log;
-            let (counts, at) = self.drive_until(time - STANDING, &mut moves, truth, &mut log.bumps);
+            let at = self.drive_until(time - STANDING, &mut moves, truth, &mut log.bumps);
+            let counts = at.map_or([0; 2], |(index, share)| moves.counts(index, share));
             track.read(counts);
             let held = moves.held(at, log.left.last() == Some(&(counts[0] as f64)));
             log.time.push(time);
             log.left.push(counts[0] as f64);
             log.right.push((counts[1] + held) as f64);
+            if let Some(rolling) = &self.rolling {
+                log.rollers.resize(rolling.wheels, Vec::new());
+                let counts = at.map_or([0; MOST_WHEELS], |(index, share)| moves.wheel_counts(index, share));
+                log.rollers.iter_mut().zip(counts).for_each(|(counter, count)| counter.push(count as f64));
+            }
             recording.truth.push(truth.pose());
             recording.computed.push(track.pose());
             if time + 1e-9 >= next_reference || sample == samples {
@@ -119,25 +120,25 @@ impl Simulator {
         Ok(())
     }
 
-    /// Drives until some time after START: the counts then, and the present move with the share of it that is done.
+    /// Drives until some time after START: the present move then, with the share of it that is done.
     fn drive_until(
         &self,
         driving: f64,
         moves: &mut Moves,
         truth: &mut Truth,
         bumps: &mut Vec<[f64; 2]>,
-    ) -> ([i64; 2], Option<(usize, f64)>) {
+    ) -> Option<(usize, f64)> {
         // Every move that ended since the last sample is driven to its end, and the present one up to this sample.
         while let Some((stretch, leg)) = moves.next_due(self, driving) {
             self.advance(truth, 1.0, bumps);
             truth.begin(stretch, leg);
         }
-        let Some((index, share)) = moves.at(driving) else { return ([0; 2], None) };
+        let (index, share) = moves.at(driving)?;
         self.advance(truth, share, bumps);
         if share >= 1.0 {
             truth.rest_until(driving);
         }
-        (moves.counts(index, share), Some((index, share)))
+        Some((index, share))
     }
 
     /// Drives on, and notes where the wheels of the axle meet bumps: to a sample's way.
@@ -145,6 +146,7 @@ impl Simulator {
         let ahead = truth.ahead().to_vec();
         truth.advance(share);
         let (pose, half) = (truth.pose(), 0.5 * self.robot().drive.wheelbase());
+        let pose = Pose2 { heading: pose.heading + truth.course(), ..pose };
         for bump in ahead[truth.ahead().len()..].iter().rev() {
             let left = if bump.wheel == Wheel::Left { half } else { -half };
             bumps.push([pose.x - left * libm::sin(pose.heading), pose.y + left * libm::cos(pose.heading)]);
@@ -159,6 +161,8 @@ struct Moves {
     legs: Vec<Leg>,
     /// Before the first move, and after each.
     rests: Vec<Rest>,
+    /// The same of all wheels with rollers; none of a robot without such.
+    wheels: Vec<WheelsAtRest>,
     begun: usize,
 }
 
@@ -167,8 +171,19 @@ impl Moves {
     fn new(simulator: &mut Simulator, direction: Direction, test: TestKind) -> Moves {
         let legs = simulator.course(direction).legs.clone();
         let counts = std::iter::once([0; 2]).chain(legs.iter().map(|leg| leg.stop));
-        let rests = counts.map(|count| Rest { count, phase: simulator.draw_phase() }).collect();
-        Moves { direction, test, legs, rests, begun: 0 }
+        let Some(rolling) = simulator.rolling.take() else {
+            let rests = counts.map(|count| Rest { count, phase: simulator.draw_phase() }).collect();
+            return Moves { direction, test, legs, rests, wheels: Vec::new(), begun: 0 };
+        };
+        // The axle of such a robot has no counters of its own.
+        let rests = counts.map(|_| Rest { count: [0; 2], phase: [0; 2] }).collect();
+        let begun = WheelsAtRest { phase: simulator.draw_phases(), ..WheelsAtRest::default() };
+        let mut wheels = vec![begun];
+        for index in 0..legs.len() {
+            wheels.push(rolling.after(direction, index, &begun, || simulator.draw_phases()));
+        }
+        simulator.rolling = Some(rolling);
+        Moves { direction, test, legs, rests, wheels, begun: 0 }
     }
 
     /// Begins the next move, where its time has come.
@@ -176,8 +191,12 @@ impl Moves {
         let index = self.begun;
         let leg = self.legs.get(index).filter(|leg| driving >= if index == 0 { 0.0 } else { leg.begins })?;
         self.begun += 1;
+        if let Some(rolling) = &simulator.rolling {
+            let believed = rolling.odometry.displacement(self.wheel_line(index).ticks());
+            return Some((simulator.stretch(&believed, index, self.direction, self.test), leg));
+        }
         let travel = simulator.believed(leg, &self.line(index));
-        Some((Stretch { index, direction: self.direction, test: self.test, travel }, leg))
+        Some((Stretch { index, direction: self.direction, test: self.test, travel, left: leg.left }, leg))
     }
 
     /// The present move, and the share of it that is done.
@@ -190,6 +209,17 @@ impl Moves {
     /// What the wheels turn in a move.
     fn line(&self, index: usize) -> WheelLine {
         self.rests[index].line_to(&self.rests[index + 1])
+    }
+
+    /// What all wheels with rollers turn in a move.
+    fn wheel_line(&self, index: usize) -> RollerLine {
+        self.wheels[index].line_to(&self.wheels[index + 1])
+    }
+
+    /// The counts of all wheels with rollers where a share of a move is done.
+    fn wheel_counts(&self, index: usize, share: f64) -> [i64; MOST_WHEELS] {
+        let gained = self.wheel_line(index).counts_at(share);
+        std::array::from_fn(|wheel| self.wheels[index].count[wheel] + gained[wheel])
     }
 
     /// The counts where a share of a move is done.

@@ -113,6 +113,7 @@ mod tests {
     fn leg(travel: f64, begins: f64) -> Leg {
         Leg {
             travel: WheelTravel { left: travel, right: travel },
+            left: 0.0,
             stop: [0; 2],
             counting: Robot::labmate().counting(travel, 0.0).unwrap(),
             begins,

@@ -53,7 +53,8 @@ impl Floor<f64> for Met<'_> {
     fn moved(&mut self, step: &ConvoyStep, truck: usize, believed: WheelTravel, real: &Pose2) -> Displacement2 {
         if self.begun != Some(step.index) {
             let leg = &self.legs[step.index];
-            let stretch = Stretch { index: step.index, direction: self.direction, test: self.test, travel: leg.travel };
+            let (index, travel) = (step.index, leg.travel);
+            let stretch = Stretch { index, direction: self.direction, test: self.test, travel, left: 0.0 };
             self.bumps = self.truth.bumps_of(stretch, leg);
             self.begun = Some(step.index);
         }

@@ -6,7 +6,10 @@ use super::pieces::{Noise, Piece, Pieces};
 use super::rolls::{Roll, Rolls};
 use super::way::Way;
 use crate::drive::{Drive, LinkReading, WheelTravel};
-use crate::effect::{Bump, Chain, Changes, Context, Law, Model, RandomLaws, Sight, Stretch, WheelVariance};
+use crate::effect::{
+    Aside, Bump, Chain, Changes, Context, Law, Model, RandomLaws, Sight, Stretch, WheelVariance, across, course,
+    course_angle,
+};
 use crate::engine::Instructions;
 use crate::geometry::{Displacement2, Pose2, Real};
 use crate::path::Direction;
@@ -29,6 +32,8 @@ pub struct Truth {
     noisy: bool,
     /// Whether effects vary along the way.
     varies: bool,
+    /// Whether the robot moves sideways too: what it does depends on the piece then.
+    slides: bool,
     way: Way,
     noise: Stream,
     /// Three normal draws for each pending piece of travel.
@@ -39,6 +44,8 @@ pub struct Truth {
     pieces: Pieces,
     /// Travel of the present stretch as the robot believes it.
     believed: WheelTravel,
+    /// Way to the left of the present stretch as the robot believes it.
+    left: f64,
     /// Travel that it was commanded to have, the same in every trial.
     commanded: WheelTravel,
     /// Upcoming bumps of the stretch, the nearest last.
@@ -97,6 +104,7 @@ impl Truth {
             rotation_per_metre: 0.0,
             noisy: false,
             varies: false,
+            slides: model.robot().drive.kind().moves_sideways(),
             way: Way::new(model.robot(), model.reads_place()),
             noise: Stream::new(0, 0, 0),
             draws: Vec::new(),
@@ -104,6 +112,7 @@ impl Truth {
             rolls: Rolls::default(),
             pieces: Pieces::new(Instructions::best()),
             believed: WheelTravel::default(),
+            left: 0.0,
             commanded: WheelTravel::default(),
             ahead: Vec::new(),
             done: 1.0,
@@ -141,6 +150,13 @@ impl Truth {
         let variance = variance(&self.random, &WheelTravel { left: 1.0, right: 1.0 });
         self.noisy = variance != WheelVariance::default();
         self.varies = self.random.iter().any(|part| part.effect.varies(&part.values));
+        self.way.whole = !self.varies;
+    }
+
+    /// Whether stretches are driven piece by piece, each with its context.
+    #[inline]
+    fn in_pieces(&self) -> bool {
+        self.varies || self.slides
     }
 
     /// Opens the random streams of a trial; its runs make one session.
@@ -227,7 +243,7 @@ impl Truth {
     /// Begins one more run at START; the ends of earlier runs remain available.
     pub(super) fn start_another(&mut self, direction: Direction, recorded: bool) {
         let start = self.draw_start();
-        if self.varies {
+        if self.in_pieces() {
             // Room for the pieces of one run, not of all.
             self.pieces.settle(self.rotation_per_metre);
             self.way.start(direction, recorded, start);
@@ -261,10 +277,11 @@ impl Truth {
 
     /// Begins a stretch, commanded by a move of the course; its bumps are drawn now.
     pub fn begin(&mut self, stretch: Stretch, leg: &Leg) {
-        if self.varies {
+        if self.in_pieces() {
             self.rest_until(leg.begins);
-            self.way.begin(leg, &stretch.travel);
+            self.way.begin(leg, &stretch);
         }
+        self.left = stretch.left;
         self.commanded = leg.travel;
         self.ahead.clear();
         for part in changing(&mut self.random, Changes::BUMPS) {
@@ -279,6 +296,11 @@ impl Truth {
     pub fn place(&mut self, bump: Bump) {
         let behind = self.ahead.partition_point(|other| other.at >= bump.at);
         self.ahead.insert(behind, bump);
+    }
+
+    /// The direction in which the robot moves in the present stretch, from its heading \[rad\].
+    pub(super) fn course(&self) -> f64 {
+        course_angle(&self.believed, self.left)
     }
 
     /// Upcoming bumps of the stretch, the nearest last.
@@ -301,7 +323,7 @@ impl Truth {
             return;
         }
         self.done = share;
-        if self.varies {
+        if self.in_pieces() {
             return self.roll_in_pieces(share);
         }
         let whole = self.noisy && piece == 1.0;
@@ -352,12 +374,27 @@ impl Truth {
         }
         if self.noisy {
             // It is drawn in the frame of the beginning of the stretch, and applied in the frame of its end.
-            let [x, y, turned] = self.diffusion(&rolled, &moved).scatter(normals(&mut self.noise));
+            let [x, y, turned] = if self.slides {
+                self.scatter_across(&moved)
+            } else {
+                self.diffusion(&rolled, &moved).scatter(normals(&mut self.noise))
+            };
             let (sine, cosine) = moved.rotation.sine_cosine();
             let moves = [cosine * x + sine * y, cosine * y - sine * x, turned];
             self.way.put(moves);
             self.pieces.push(&Piece { motion: Displacement2::NONE, noise: Noise::Moves(moves) });
         }
+    }
+
+    /// The noise of a stretch in which the robot may move sideways: that of an axle that stands across its course.
+    fn scatter_across(&mut self, moved: &Displacement2) -> [f64; 3] {
+        let along = self.drive.wheel_travel(moved.forward, moved.rotation);
+        let travel = across(&along, moved.sideways);
+        let way = 0.5 * (travel.left + travel.right);
+        let motion = Displacement2 { forward: way, sideways: 0.0, rotation: moved.rotation };
+        let [x, y, turned] = self.diffusion(&travel, &motion).scatter(normals(&mut self.noise));
+        let [cosine, sine] = course(&along, moved.sideways).unwrap_or([1.0, 0.0]);
+        [cosine * x - sine * y, sine * x + cosine * y, turned]
     }
 
     fn diffusion(&self, travel: &WheelTravel, motion: &Displacement2) -> Diffusion {
@@ -377,12 +414,21 @@ impl Truth {
 
     fn meet(&mut self, bump: &Bump) {
         let travel = self.drive.bumped(bump.wheel, bump.lost);
-        if !self.varies {
+        if !self.in_pieces() {
             return self.rolls.push(WheelTravel::default(), Roll::Bump(travel));
         }
-        let motion = self.chain.body(&self.way.moment(), &travel);
+        let motion = if self.slides { self.bump_across(&travel) } else { self.chain.body(&self.way.moment(), &travel) };
         self.way.advance(&motion);
         self.pieces.push(&Piece { motion, noise: Noise::None });
+    }
+
+    /// What an axle that stands across the course loses at a bump.
+    fn bump_across(&self, lost: &WheelTravel) -> Displacement2 {
+        let [cosine, sine] = course(&self.believed, self.left).unwrap_or([1.0, 0.0]);
+        let Displacement2 { forward, rotation, .. } = self.drive.displacement(lost);
+        let aside = Aside { way: sine * forward, ..Aside::NONE };
+        let travel = self.drive.wheel_travel(cosine * forward, rotation);
+        self.chain.body(&Context { aside, ..self.way.moment() }, &travel)
     }
 
     /// The true pose.

@@ -2,7 +2,7 @@
 
 use super::Leg;
 use crate::drive::{Robot, WheelTravel};
-use crate::effect::{Context, Progress, RunContext};
+use crate::effect::{Aside, Context, Progress, RunContext, Stretch};
 use crate::geometry::{Displacement2, Pose2};
 use crate::path::{Direction, Pieces, SpeedProfile};
 
@@ -12,6 +12,8 @@ pub(super) struct Way {
     robot: Robot,
     progress: Progress,
     pieces: Pieces,
+    /// Whether each move is one piece.
+    pub whole: bool,
     /// The last piece.
     at: Context,
     /// True pose; its place stays at the beginning of the run unless `follows` is set.
@@ -29,7 +31,8 @@ impl Way {
         Way {
             robot: robot.clone(),
             progress: RunContext::default().progress(robot, false),
-            pieces: Pieces::of(&WheelTravel::default(), &SpeedProfile::default()),
+            pieces: Pieces::along(&WheelTravel::default(), 0.0, SpeedProfile::default().over(0.0)),
+            whole: false,
             at: Context::default(),
             pose: Pose2::IDENTITY,
             follows,
@@ -72,16 +75,20 @@ impl Way {
 
     /// Begins a move of the course, after the pause before it, of which the robot believes such a travel.
     #[inline(never)]
-    pub(super) fn begin(&mut self, leg: &Leg, believed: &WheelTravel) {
+    pub(super) fn begin(&mut self, leg: &Leg, believed: &Stretch) {
         self.rest_until(leg.begins);
         self.clock = leg.begins + leg.profile.duration();
-        self.pieces = Pieces::along(believed, leg.profile);
+        self.pieces = Pieces::along(&believed.travel, believed.left, leg.profile);
+        if self.whole {
+            self.pieces = self.pieces.clone().in_one();
+        }
     }
 
     /// The next piece of the move and its believed wheel travel, up to where `share` of the move is done.
     pub(super) fn until(&mut self, share: f64) -> Option<(Context, WheelTravel)> {
         let piece = self.pieces.until(share)?;
-        let at = self.progress.piece(&piece.travel, piece.duration, piece.from, piece.to);
+        let aside = Aside { way: piece.left, speed: piece.speed_left, ..Aside::NONE };
+        let at = self.progress.piece_aside(&piece.travel, aside, piece.duration, piece.from, piece.to);
         self.at = at.at_pose(&self.pose);
         Some((self.at, piece.travel))
     }
@@ -93,6 +100,7 @@ impl Way {
             duration: 0.0,
             wheel_rotation: [0.0; 2],
             wheel_travel: [0.0; 2],
+            aside: Aside::NONE,
             ..self.at.at_pose(&self.pose)
         }
     }
@@ -120,34 +128,49 @@ impl Way {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::path::Path;
+    use crate::drive::DriveKind;
+    use crate::effect::TestKind;
+    use crate::path::{DIAGONAL_SQUARE, Path};
     use crate::replay::Track;
     use crate::simulate::Course;
 
     #[test]
     fn the_pieces_of_a_run_are_those_of_the_track_of_its_commands_pauses_included() {
-        let robot = Robot::labmate();
-        for direction in Direction::BOTH {
-            let course = Course::new(&robot, &Path::umbmark(), direction).unwrap();
+        let mecanum = Robot { drive: DriveKind::Mecanum.usual(), ..Robot::labmate() };
+        let diamond = Path::new(&DIAGONAL_SQUARE, &[1.0], SpeedProfile::default()).unwrap();
+        for (direction, robot, path) in Direction::BOTH
+            .into_iter()
+            .flat_map(|d| [(d, Robot::labmate(), Path::umbmark()), (d, mecanum.clone(), diamond.clone())])
+        {
+            let course = Course::new(&robot, &path, direction).unwrap();
             let mut way = Way::new(&robot, false);
             way.open();
             way.start(direction, false, Pose2::IDENTITY);
             let mut driven = Vec::new();
             for leg in &course.legs {
-                way.begin(leg, &leg.travel);
+                let (index, test) = (driven.len(), TestKind::Systematic);
+                way.begin(leg, &Stretch { index, direction, test, travel: leg.travel, left: leg.left });
                 while let Some((at, travel)) = way.until(1.0) {
-                    way.advance(&robot.drive.displacement(&travel));
+                    let motion = robot.drive.displacement(&travel);
+                    way.advance(&Displacement2 { sideways: at.aside.way, ..motion });
                     driven.push(at);
                 }
             }
-            let track = Track::in_pieces(&Path::umbmark(), direction, &robot);
+            let track = Track::in_pieces(&path, direction, &robot);
             assert_eq!(driven.len(), track.contexts().len());
             for (driven, told) in driven.iter().zip(track.contexts()) {
                 let numbers = |at: &Context| {
                     let along = [at.time, at.distance, at.since_turn, at.heading, at.wheel_angle[0], at.wheel_angle[1]];
                     let rates =
                         [at.duration, at.speed, at.turn_rate, at.speed_change[0], at.speed_change[1], at.length];
-                    let senses = [at.last_turn, at.direction, at.reversed[0], at.reversed[1], at.run, 0.0];
+                    let senses = [
+                        at.last_turn,
+                        at.direction,
+                        at.reversed[0],
+                        at.reversed[1],
+                        at.run,
+                        at.aside.way + at.aside.speed,
+                    ];
                     [along, rates, senses]
                 };
                 let pairs = numbers(driven).into_iter().flatten().zip(numbers(told).into_iter().flatten());

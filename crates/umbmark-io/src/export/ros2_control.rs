@@ -3,17 +3,18 @@
 use super::covariance::{diagonal, of_pose, of_twist, sentences};
 use super::text::{list, number};
 use super::{Comment, Export, ExportError, Target, Written};
-use umbmark_core::drive::Drive;
+use umbmark_core::drive::{Drive, Rollers};
 
 /// Parameters to be loaded with the controller: some are read-only later.
 ///
 /// `diff_drive_controller` multiplies: left_wheel_radius_multiplier 2 E_s/(1 + E_d), right 2 E_s E_d/(1 + E_d),
 /// wheel_separation_multiplier E_b, where the nominal wheels are the same; else each wheel's ratio to the mean. The steering
-/// controllers have no multipliers: they get the corrected lengths.
+/// controllers have no multipliers: they get the corrected lengths, and so do those of bases on rollers, which have one radius for all
+/// wheels.
 pub static TARGET: Target = Target {
     name: "ros2_control",
-    about: "YAML for diff_drive_controller, ackermann_steering_controller, tricycle_steering_controller or tricycle_controller, with \
-            covariances",
+    about: "YAML for diff_drive_controller, ackermann_steering_controller, tricycle_steering_controller, tricycle_controller, \
+            mecanum_drive_controller or omni_wheel_drive_controller, with covariances",
     holds_all: false,
     write,
 };
@@ -27,6 +28,13 @@ fn write(export: &Export) -> Result<Written, ExportError> {
         ("tricycle_controller", of_front_wheel(export, &mut notes)?)
     } else if kind.steers() {
         ("ackermann_steering_controller", of_steering(export, &mut notes)?)
+    } else if let Some(rollers) = export.corrected()?.drive.rollers() {
+        one_radius(&rollers, &mut notes);
+        if rollers.wheels().iter().all(|wheel| wheel.roller == 0.0) {
+            ("omni_wheel_drive_controller", of_omni_wheels(export, &rollers, &mut notes)?)
+        } else {
+            ("mecanum_drive_controller", of_mecanum(export)?)
+        }
     } else {
         return Err(export.no_drive(TARGET.name));
     };
@@ -36,18 +44,86 @@ fn write(export: &Export) -> Result<Written, ExportError> {
         let what = "the name of a controller has letters, digits, _, /, . and - only; give it as ROS 2 lists it";
         return Err(ExportError::Missing { target: TARGET.name, what });
     }
-    let mut lines: Vec<String> = values.iter().map(|(key, value)| format!("{key}: {}", number(*value))).collect();
+    let mut lines = nested(&values, number);
     if let Some(noise) = export.noise_or(&mut notes) {
-        let [twist, pose] = sentences(&export.usual);
+        let sentences = sentences(&export.usual);
         let of = |variances| list(&diagonal(variances));
-        lines.push(format!("# {pose}"));
-        lines.push(format!("pose_covariance_diagonal: {}", of(of_pose(&noise))));
-        lines.push(format!("# {twist}"));
-        lines.push(format!("twist_covariance_diagonal: {}", of(of_twist(&noise, &export.usual))));
+        let keys = if usual == "omni_wheel_drive_controller" {
+            ["diagonal_covariance.pose", "diagonal_covariance.twist"]
+        } else {
+            ["pose_covariance_diagonal", "twist_covariance_diagonal"]
+        };
+        let [pose, twist] = [of(of_pose(&noise)), of(of_twist(&noise, &export.usual))];
+        lines.extend(sentences.iter().rev().map(|said| format!("# {said}")));
+        lines.extend(nested(&[(keys[0], pose), (keys[1], twist)], |value: String| value));
     }
     let body: String = lines.iter().map(|line| format!("    {line}\n")).collect();
     let head = Comment::Hash.line(&export.heading()) + &Comment::Hash.lines(&notes);
     Ok(Written { text: format!("{head}{controller}:\n  ros__parameters:\n{body}"), notes })
+}
+
+/// Keys with dots as those of a map in a map; neighbours with the same beginning share it.
+fn nested<T: Clone>(values: &[(&str, T)], written: impl Fn(T) -> String) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut inside = None;
+    for (key, value) in values {
+        let value = written(value.clone());
+        match key.split_once('.') {
+            Some((map, key)) => {
+                if inside != Some(map) {
+                    lines.push(format!("{map}:"));
+                }
+                lines.push(format!("  {key}: {value}"));
+                inside = Some(map);
+            }
+            None => {
+                lines.push(format!("{key}: {value}"));
+                inside = None;
+            }
+        }
+    }
+    lines
+}
+
+/// Half of the sum of both distances of the wheels, and one radius.
+fn of_mecanum(export: &Export) -> Result<Vec<(&'static str, f64)>, ExportError> {
+    let corrected = export.corrected()?.drive;
+    Ok(vec![
+        ("kinematics.wheels_radius", 0.5 * corrected.wheel_diameter_left()),
+        ("kinematics.sum_of_robot_center_projection_on_X_Y_axis", 0.5 * corrected.wheelbase()),
+    ])
+}
+
+/// Wheels anti-clockwise round the base from the first one.
+fn of_omni_wheels(
+    export: &Export,
+    rollers: &Rollers,
+    notes: &mut Vec<String>,
+) -> Result<Vec<(&'static str, f64)>, ExportError> {
+    let corrected = export.corrected()?.drive;
+    notes.push(
+        "wheel_names are the joints in the order of the counters, anti-clockwise round the base, each counting up clockwise round it"
+            .into(),
+    );
+    let [x, y] = rollers.wheels()[0].at;
+    Ok(vec![
+        ("wheel_offset", y.atan2(x)),
+        ("robot_radius", x.hypot(y)),
+        ("wheel_radius", 0.5 * corrected.wheel_diameter_left()),
+    ])
+}
+
+/// A note on wheels of different sizes, for a controller that has one radius.
+fn one_radius(rollers: &Rollers, notes: &mut Vec<String>) {
+    let diameters: Vec<f64> = rollers.wheels().iter().map(|wheel| wheel.diameter).collect();
+    if diameters.iter().any(|diameter| (diameter / diameters[0] - 1.0).abs() > 1e-9) {
+        let sizes: Vec<String> = diameters.iter().map(|diameter| number(*diameter)).collect();
+        let sizes = sizes.join(", ");
+        notes.push(format!(
+            "this controller has one radius for all wheels, their mean; the wheels' diameters in m are {sizes}, so scale the positions and speeds \
+             that the driver of each wheel reports by its own size over the mean"
+        ));
+    }
 }
 
 fn of_two_wheels(export: &Export) -> Result<Vec<(&'static str, f64)>, ExportError> {

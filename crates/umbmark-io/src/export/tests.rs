@@ -96,6 +96,45 @@ fn a_tricycle_that_drives_its_front_wheel_has_a_controller_of_its_own_and_each_l
     }
 }
 
+/// Oracle: the equations of the controllers' odometry (ros2_controllers), beside those of the drive.
+#[test]
+fn bases_on_rollers_get_the_numbers_by_which_their_controllers_reckon_the_same_motion() {
+    let ways = [0.1, -0.2, 0.3, 0.05];
+    let noise = Noise { heading_per_metre: 0.004, ..Noise::default() };
+    let mecanum = Robot { drive: DriveKind::Mecanum.usual(), ..Robot::labmate() };
+    let model = model_of(&mecanum, &[("wheelbase", "e_b", 1.02), ("roller_scale", "e_s", 0.99)]);
+    let Written { text, notes } = written("ros2_control", &Export { noise: Some(noise), ..Export::of(&model) });
+    assert!(
+        text.contains("mecanum_drive_controller:\n  ros__parameters:\n    kinematics:\n      wheels_radius: "),
+        "{text}"
+    );
+    let (radius, arm) =
+        (value(&text, "wheels_radius", ": "), value(&text, "sum_of_robot_center_projection_on_X_Y_axis", ": "));
+    let motion = mecanum.drive.with("wheel_distance_length_m", 0.3 * 1.02).unwrap();
+    let motion = motion.with("wheel_distance_width_m", 0.3 * 1.02).unwrap().rollers().unwrap().motion(&ways);
+    let turned = (-ways[0] + ways[1] - ways[2] + ways[3]) / (4.0 * arm);
+    assert!((turned - motion.rotation).abs() < 1e-9 && (radius - 0.075 * 0.99).abs() < 1e-9, "{text}");
+    assert!(text.contains("    twist_covariance_diagonal: [") && notes.is_empty(), "{notes:?}");
+
+    let omni = Robot { drive: DriveKind::Omni3.usual(), ..Robot::labmate() };
+    let model = model_of(&omni, &[("front_diameter_ratio", "ratio", 1.01), ("wheelbase", "e_b", 1.02)]);
+    let Written { text, notes } = written("ros2_control", &Export { noise: Some(noise), ..Export::of(&model) });
+    assert!(
+        text.contains("omni_wheel_drive_controller:\n") && text.contains("    diagonal_covariance:\n      pose: ["),
+        "{text}"
+    );
+    let (offset, arm) = (value(&text, "wheel_offset", ": "), value(&text, "robot_radius", ": "));
+    let motion = umbmark_core::geometry::Displacement2 { forward: 0.3, sideways: -0.2, rotation: 0.7 };
+    let rollers = omni.drive.with("wheel_distance_m", 0.2 * 1.02).unwrap().rollers().unwrap();
+    for (k, way) in rollers.ways_of(&motion).iter().enumerate() {
+        let angle = offset + k as f64 * std::f64::consts::TAU / 3.0;
+        let expected = motion.forward * angle.sin() - motion.sideways * angle.cos() - arm * motion.rotation;
+        assert!((way - expected).abs() < 1e-9, "{way} {expected}");
+    }
+    assert!(notes.iter().any(|note| note.contains("one radius for all wheels")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.contains("anti-clockwise round the base")), "{notes:?}");
+}
+
 /// Oracle: sums over one second of a filter that integrates speeds with that variance, by hand.
 #[test]
 fn covariances_of_speeds_add_up_to_the_noise_of_the_motion() {

@@ -24,6 +24,11 @@ Shape: TypeAlias = Literal[
     "circle",
     "straight",
     "spin",
+    "fixed_square",
+    "fixed_circle",
+    "diagonal_square",
+    "sideways_square",
+    "slide",
     "waypoints",
 ]
 # An effect of the catalogue; those of one's own have other names.

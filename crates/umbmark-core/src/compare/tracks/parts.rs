@@ -183,7 +183,7 @@ fn told(moves: &[Numbered], time: &[f64]) -> (MoveKind, String, f64, f64) {
     let (size, sense) = match m.done {
         Done::Turn { angle } => (angle.abs(), angle.signum()),
         Done::Arc { length, angle } => (length, angle.signum()),
-        Done::Leg { length } => (length, 0.0),
+        Done::Leg { length, .. } => (length, 0.0),
         Done::Stop => (0.0, 0.0),
     };
     (kind(&m.done), name.clone(), sense, size / seconds)

@@ -1,11 +1,14 @@
 //! Experiments that can be done with a tape measure, and the scatter of their poses.
 
-use crate::drive::Robot;
-use crate::effect::{Chain, Derived, Evaluate};
+use crate::drive::{Robot, WheelTravel};
+use crate::effect::{Chain, Context, Derived, Evaluate, across, course_angle};
 use crate::evidence::ends::{Ends, Fitted};
 use crate::evidence::noise_shape::trucks;
-use crate::geometry::{Dual, Pose2};
-use crate::path::{CIRCLE, Direction, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedProfile};
+use crate::geometry::{Displacement2, Dual, Pose2};
+use crate::path::{
+    CIRCLE, DIAGONAL_SQUARE, Direction, FIXED_SQUARE, Path, SIDEWAYS_SQUARE, SLIDE, SPIN, SQUARE, STRAIGHT, Shape,
+    SpeedProfile,
+};
 use crate::replay::Track;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, Vector3};
 
@@ -131,19 +134,25 @@ impl Leg {
             let end = convoy.meant(pieces.end)[0];
             return (trucks::gathered(convoy, &robot.drive, pieces), end);
         }
-        let travel = &self.track.travel()[pieces];
-        let end = travel.iter().fold(from, |pose, t| pose.moved(&robot.drive.displacement(t)));
+        let moved = |share: f64, travel: &WheelTravel, at: &Context| {
+            let motion = robot.drive.displacement(&travel.scaled(share));
+            Displacement2 { sideways: share * at.aside.way, ..motion }
+        };
+        let pieces = || self.track.travel()[pieces.clone()].iter().zip(&self.track.contexts()[pieces.clone()]);
+        let end = pieces().fold(from, |pose, (travel, at)| pose.moved(&moved(1.0, travel, at)));
         let turn = 1.0 / robot.drive.wheelbase();
         let (mut sum, mut pose) = (Matrix3::zeros(), from);
-        for t in travel {
-            let at = pose.moved(&robot.drive.displacement(&t.scaled(0.5)));
-            let (sine, cosine) = libm::sincos(at.heading);
+        for (travel, context) in pieces() {
+            let at = pose.moved(&moved(0.5, travel, context));
+            let left = context.aside.way;
+            let (sine, cosine) = libm::sincos(at.heading + course_angle(travel, left));
             let along = Vector3::new(cosine, sine, 0.0) * 0.5;
             let about = Vector3::new(at.y - end.y, end.x - at.x, 1.0) * turn;
-            for (shift, rolled) in [(along - about, t.left), (along + about, t.right)] {
+            let rolled = across(travel, left);
+            for (shift, rolled) in [(along - about, rolled.left), (along + about, rolled.right)] {
                 sum += shift * shift.transpose() * rolled.abs();
             }
-            pose = pose.moved(&robot.drive.displacement(t));
+            pose = pose.moved(&moved(1.0, travel, context));
         }
         (sum, end)
     }
@@ -176,7 +185,18 @@ pub(super) fn designs(ends: &Ends) -> Vec<Design> {
         plain("5 turns on the spot each way, 3 runs each", of(&SPIN, &[5.0], speed), robot, 3, true),
         plain("5 turns on the spot at double rate each way, 3 runs each", of(&SPIN, &[5.0], faster), robot, 3, true),
         plain("circles of 1 m radius, 2 turns each way, 3 runs each", of(&CIRCLE, &[1.0, 2.0], speed), robot, 3, true),
+        plain("a way of 10 m to the side by tape, 5 runs", of(&SLIDE, &[10.0], speed), robot, 5, false),
     ];
+    let side = ends.path.as_ref().and_then(|path| path.values().first().copied()).unwrap_or(2.0);
+    for (how, shape) in [
+        ("at a fixed heading", &FIXED_SQUARE),
+        ("on its corner", &DIAGONAL_SQUARE),
+        ("driven to the side", &SIDEWAYS_SQUARE),
+    ] {
+        let what = format!("a square of {side} m {how}, 3 runs each way");
+        let driven = ends.path.as_ref().is_some_and(|path| std::ptr::eq(path.shape(), shape));
+        offered.push(plain(&what, of(shape, &[side], speed).filter(|_| !driven), robot, 3, true));
+    }
     if let Some(path) = &ends.path {
         let quarter = std::f64::consts::FRAC_PI_2;
         offered.push(again(path, robot, "the pose taped at every stop", true, 0.0));
@@ -221,21 +241,14 @@ fn again(path: &Path, robot: &Robot, how: &str, stops: bool, turned: f64) -> Opt
 
 /// Time on the way \[min\].
 pub(crate) fn minutes(path: &Path, robot: &Robot) -> f64 {
-    let moves = path.moves(Direction::Ccw);
-    let seconds: f64 = moves
-        .iter()
-        .map(|m| {
-            let travel = m.wheel_travel(&robot.drive);
-            path.speed.over(travel.left.abs().max(travel.right.abs())).duration() + path.speed.pause()
-        })
-        .sum();
+    let profiles = path.profiles(Direction::Ccw, &robot.drive);
+    let seconds: f64 = profiles.iter().map(|(profile, pause)| profile.duration() + pause).sum();
     seconds / 60.0
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drive::WheelTravel;
     use crate::effect::{Model, Number};
 
     /// Poses at the stops, with the travel of one piece changed.

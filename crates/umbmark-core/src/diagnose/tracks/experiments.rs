@@ -17,7 +17,10 @@ use crate::evidence::FitError;
 use crate::evidence::tracks::Projected;
 use crate::likelihood::{Noise, ObservedRun, gram};
 use crate::parameter::{Parameter, Role};
-use crate::path::{CIRCLE, Direction, FIGURE_EIGHT, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedProfile, WAYPOINTS};
+use crate::path::{
+    CIRCLE, DIAGONAL_SQUARE, Direction, FIGURE_EIGHT, FIXED_SQUARE, Path, SIDEWAYS_SQUARE, SLIDE, SPIN, SQUARE,
+    STRAIGHT, Shape, SpeedProfile, WAYPOINTS,
+};
 use crate::replay::Track;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -282,7 +285,7 @@ fn drives(exam: &Examination) -> Vec<Drive> {
     let [top, acceleration, pause] = speed.values();
     let at = |factor: f64| SpeedProfile::new(factor * top, acceleration, pause).unwrap_or(speed);
     let of = |what: &str, shape: &'static Shape, values: &[f64], speed: SpeedProfile, turned: f64| {
-        let path = Path::new(shape, values, speed).ok()?;
+        let path = Path::new(shape, values, speed).ok().filter(|path| path.suits(&exam.fitted.observed.robot))?;
         Some(Drive { what: format!("{what}, {RUNS} runs each way"), path, turned, directions: &Direction::BOTH })
     };
     let mut offered = vec![
@@ -294,6 +297,10 @@ fn drives(exam: &Examination) -> Vec<Drive> {
         of("a circle of 1 m radius, twice round", &CIRCLE, &[1.0, 2.0], speed, 0.0),
         of("a circle of 1 m radius, twice round, at double speed", &CIRCLE, &[1.0, 2.0], at(2.0), 0.0),
         of("a figure-eight of 1 m radius", &FIGURE_EIGHT, &[1.0], speed, 0.0),
+        of("a way of 5 m to the side", &SLIDE, &[5.0], speed, 0.0),
+        of("a square of 2 m at a fixed heading", &FIXED_SQUARE, &[2.0], speed, 0.0),
+        of("a square of 2 m on its corner, at a fixed heading", &DIAGONAL_SQUARE, &[2.0], speed, 0.0),
+        of("a square of 2 m driven to the side", &SIDEWAYS_SQUARE, &[2.0], speed, 0.0),
     ];
     if let Some(path) = path {
         let again = |what: &str, speed, turned| of(what, path.shape(), path.values(), speed, turned);
