@@ -3,6 +3,7 @@
 use umbmark_core::calibrate::Calibration;
 use umbmark_core::changed::Changed;
 use umbmark_core::compare::Compared;
+use umbmark_core::conditions::Conditions;
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Diagnosis, Options};
 use umbmark_core::drift::{Arrived, Watched};
@@ -24,7 +25,8 @@ use crate::plan_report;
 use crate::sweep::SweepReport;
 use crate::tracks_report;
 use crate::verb::{
-    calibrate as calibrating, changed as changing, compare as comparing, diagnose as diagnosing, fit as fitting,
+    calibrate as calibrating, changed as changing, compare as comparing, conditions as dividing,
+    diagnose as diagnosing, fit as fitting,
 };
 use crate::verb::{inspect as inspecting, learn as learning, score as scoring, watch as watching};
 
@@ -71,6 +73,11 @@ pub fn solution(solution: &Solution, options: &Options) -> String {
 /// Of `changed`.
 pub fn changed(found: &Changed) -> String {
     changing::told(found)
+}
+
+/// Of `conditions`.
+pub fn conditions(found: &Conditions) -> String {
+    dividing::told(found)
 }
 
 /// Of `watch`.

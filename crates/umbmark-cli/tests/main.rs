@@ -7,6 +7,7 @@ mod bad_flags;
 mod begin;
 mod book;
 mod changed;
+mod conditions;
 mod data;
 mod embedded;
 mod export;

@@ -15,6 +15,7 @@ pub mod apply;
 pub mod calibrate;
 pub mod changed;
 pub mod compare;
+pub mod conditions;
 pub mod dataset;
 pub mod diagnose;
 pub mod drift;

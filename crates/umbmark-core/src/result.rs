@@ -29,6 +29,7 @@ results! {
     clock;
     closure;
     comparison: Comparison;
+    conditions: Conditions;
     diagnosis: Diagnosis;
     effect;
     findings;

@@ -15,6 +15,7 @@ mod assembly;
 pub mod checkpoint;
 mod closures;
 mod columns;
+mod conditions;
 mod contents;
 mod controller_file;
 mod corrected;

@@ -1,4 +1,4 @@
-//! `compare`, `diagnose`, `fit`, `learn`, `solve` and `changed`.
+//! `compare`, `diagnose`, `fit`, `learn`, `solve`, `changed` and `conditions`.
 
 use std::sync::Arc;
 
@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use umbmark_cli::told;
 use umbmark_core::changed::changed as compared;
 use umbmark_core::compare::{self as comparing, Compared};
+use umbmark_core::conditions::conditions as divided;
 use umbmark_core::diagnose::{self as core, Options, first_model};
 use umbmark_core::evidence::FitError;
 use umbmark_core::result::{self, Comparison, TrackComparison};
@@ -163,6 +164,29 @@ pub fn changed(
     let work = move |told: &Watch| told.work(|watch| compared(&first, &second, &start, &options, watch));
     let found = watched(py, threads, progress, work)?.map_err(refused)?;
     Ok((json(&result::Changed::new(&found, &options))?, told::changed(&found)))
+}
+
+/// Which numbers of a robot depend on the conditions of its runs.
+#[pyfunction]
+pub fn conditions(
+    py: Python<'_>,
+    data: &Dataset,
+    start: Option<&Model>,
+    size: f64,
+    return_poses: bool,
+    #[pyo3(from_py_with = threads)] threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(String, String)> {
+    probability("size", size)?;
+    let options = Options { size, ends_only: return_poses, ..Options::default() };
+    let shared = Arc::clone(&data.0);
+    let start = match start {
+        Some(start) => start.of_data(py, &shared)?,
+        None => first_model(&shared).map_err(refused)?,
+    };
+    let work = move |told: &Watch| told.work(|watch| divided(&shared, &start, &options, watch));
+    let found = watched(py, threads, progress, work)?.map_err(refused)?;
+    Ok((json(&result::Conditions::new(&found))?, told::conditions(&found)))
 }
 
 fn solved(

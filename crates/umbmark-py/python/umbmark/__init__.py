@@ -14,6 +14,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``compare``, ``diagnose``          what models explain, and what they are missing
 ``solve``                          the one answer: what to write into the robot
 ``changed``                        what changed of a robot between two tests
+``conditions``                     which of its numbers depend on floor, load, session or temperature
 ``watch``                          whether a robot that is tested again and again changes
 ``apply``                          corrected odometry from counts and a model
 ``tracks``                         measured runs beside odometry and a model: residuals as arrays
@@ -41,6 +42,7 @@ from umbmark._arguments import Numbers, Seed
 from umbmark._calibration import Calibration, GearCalibration, calibrate, calibrate_gears
 from umbmark._changed import Changed, changed
 from umbmark._comparison import Comparison, TrackComparison, compare
+from umbmark._conditions import Conditions, conditions
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
 from umbmark._documents import Correction, Effect, Setup
 from umbmark._each import Each, each, fleet
@@ -100,6 +102,7 @@ __all__ = [
     "Calibration",
     "Changed",
     "Comparison",
+    "Conditions",
     "ConversionWarning",
     "Corrected",
     "Correction",
@@ -156,6 +159,7 @@ __all__ = [
     "calibrate_gears",
     "changed",
     "compare",
+    "conditions",
     "diagnose",
     "each",
     "effects",

@@ -1,4 +1,4 @@
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path as PathlibPath
 from typing import Any, Self, SupportsIndex, TypeAlias, Unpack, final, overload
@@ -30,6 +30,7 @@ __all__ = [
     "calibrate",
     "calibrate_gears",
     "changed",
+    "conditions",
     "compare",
     "diagnose",
     "effects",
@@ -227,6 +228,11 @@ class Dataset:
     def runs(self) -> tuple[Run, ...]: ...
     @property
     def warnings(self) -> tuple[str, ...]: ...
+    @property
+    def conditions(self) -> dict[str, list[str | float | None]]: ...
+    def with_conditions(
+        self, **conditions: str | float | None | Iterable[str | float | None]
+    ) -> Dataset: ...
     def __len__(self) -> int: ...
     @overload
     def __getitem__(self, key: SupportsIndex | str, /) -> Run: ...
@@ -513,6 +519,14 @@ def changed(
     after: Dataset,
     start: Model | None,
     options: tuple[float, int, int],
+    return_poses: bool,
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> tuple[str, str]: ...
+def conditions(
+    data: Dataset,
+    start: Model | None,
+    size: float,
     return_poses: bool,
     threads: int,
     progress: Callable[[int], object] | None,
