@@ -1,6 +1,6 @@
 """UMBmark tests by tape on several floors or days, whose numbers differ in known ways or do not.
 
-`floors.py --sets 300 --binary PATH` prints how often `umbmark conditions` names what differs, and what it names besides.
+`floors.py --sets 300 --binary PATH` prints how often `umbmark conditions` names what differs.
 """
 
 import argparse
@@ -20,8 +20,8 @@ from record import stream
 from study import ROOT
 
 KINDS = ("nothing", "wheelbase", "wheels", "both", "load", "days", "noise")
-"""What depends on what: nothing; E_b on the floor; E_d on the floor; either on a condition of its own; E_b on the load; E_b on the day
-and not on the floor; only the noise on the floor."""
+"""What differs: nothing; E_b on floors; E_d on floors; E_b on floors and E_d with the battery; E_b
+with the load; E_b on days, whatever the floor; only the noise on floors."""
 FLOORS = ("tile", "carpet", "felt", "stone")
 
 
@@ -49,7 +49,7 @@ def floor(robot: Robot, wheelbase: float = 1.0, wheel: float = 1.0, noise: float
 
 
 def sizes(random: Random, levels: int, least: float, most: float) -> list[float]:
-    """Factors of levels, the first one, the others off by at least and at most so much, and by different amounts."""
+    """Factors of levels: 1, and others that are off by about so much and differ."""
     off = log_uniform(random, least, most) * (1 if random.random() < 0.5 else -1)
     return [1.0, *(1 + off * (1 + 0.5 * k) for k in range(levels - 1))]
 
@@ -61,7 +61,8 @@ def world(kind: str, seed: int) -> World:
     test = test._replace(runs=int(random.integers(4, 9)))
     levels = int(random.integers(2, 4))
     floors = [str(name) for name in random.permutation(FLOORS)[:levels]]
-    wheelbases = sizes(random, levels, 0.01, 0.04) if kind in ("wheelbase", "both") else [1.0] * levels
+    of_wheelbase = kind in ("wheelbase", "both")
+    wheelbases = sizes(random, levels, 0.01, 0.04) if of_wheelbase else [1.0] * levels
     wheels = sizes(random, levels, 0.001, 0.003) if kind == "wheels" else [1.0] * levels
     noises = sizes(random, levels, 1.0, 3.0) if kind == "noise" else [1.0] * levels
     noises = [abs(noise) + 0.5 for noise in noises] if kind == "noise" else noises
@@ -121,21 +122,22 @@ def said(kind: str, seed: int, binary: File) -> tuple[World, dict[str, Any]]:
 
 def judged(made: World, found: dict[str, Any]) -> dict[str, int]:
     """Whether what differs was named, whether something else was, and how many intervals hold."""
-    named = {(one["key"].split(".")[1], one["condition"]) for one in found["asked"] if one["differs"]}
+    differing = [one for one in found["asked"] if one["differs"]]
+    named = {(one["key"].split(".")[1], one["condition"]) for one in differing}
     held = asked = 0
     for one in found["asked"]:
         parameter = one["key"].split(".")[1]
         largest = one["largest"]
         if largest is None or one["condition"] != "floor" or not made.values:
             continue
-        levels = [made.values.get((parameter, "floor", largest[side])) for side in ("high", "low")]
-        if None in levels or (parameter, "floor") not in made.differing or len(one["levels"]) > 2:
+        ends = [(parameter, "floor", largest[side]) for side in ("high", "low")]
+        if (parameter, "floor") not in made.differing or len(one["levels"]) > 2:
             continue
-        # The true value is that of the first floor times the factor; the difference is compared as a share.
+        # The true value is that of the first floor times the factor.
         base = made.robot.true_wheelbase_m / made.robot.wheelbase_m
         if parameter == "e_d":
             base = made.robot.true_right_m / made.robot.true_left_m
-        truth = base * (levels[0] - levels[1])
+        truth = base * (made.values[ends[0]] - made.values[ends[1]])
         low, high = largest["by"]["interval"]
         asked, held = asked + 1, held + (low < truth < high)
     return {

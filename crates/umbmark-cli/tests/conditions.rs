@@ -2,6 +2,7 @@
 
 use crate::solve::{document, flowing, said};
 use std::path::Path;
+use std::process::Command;
 
 /// Simulates a test of return poses.
 fn test(folder: &Path, name: &str, flags: &[&str]) {
@@ -20,10 +21,10 @@ fn a_wheelbase_that_differs_between_floors_is_named_and_fails_a_check_and_the_sa
     }
     let text = flowing(&said(folder, &["conditions", "tile", "carpet", "--check"], 3));
     assert!(
-        text.starts_with("The effective wheelbase, E_b differs between floors or sessions (p < 0.001): tile 0.99"),
+        text.starts_with("The effective wheelbase, E_b, differs between floors or sessions (p < 0.001): tile 0.99"),
         "{text}"
     );
-    assert!(text.contains("note: floor and session divide the runs alike"), "{text}");
+    assert!(text.contains("note floor and session divide the runs alike"), "{text}");
     let found = document(folder, &["conditions", "tile", "carpet"]);
     assert_eq!(found["differs"], true);
     let row = &found["asked"][1];
@@ -32,7 +33,7 @@ fn a_wheelbase_that_differs_between_floors_is_named_and_fails_a_check_and_the_sa
     assert!(low < 0.018 && 0.018 < high, "{low} {high}");
     assert_eq!(found["numbers"][1]["depends_on"][0], "floor");
     let same = flowing(&said(folder, &["conditions", "tile", "again", "--check"], 0));
-    assert!(same.starts_with("These runs show no difference between sessions of e_d ("), "{same}");
+    assert!(same.starts_with("These runs show no difference between sessions for e_d ("), "{same}");
     assert!(same.contains("floor is the same in all 20 runs"), "{same}");
 }
 
@@ -41,6 +42,9 @@ fn runs_of_which_nothing_is_stated_are_refused_with_what_to_do() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     test(folder, "tile", &["--seed", "3"]);
-    let refused = flowing(&said(folder, &["conditions", "tile"], 1));
+    let output = Command::new(env!("CARGO_BIN_EXE_umbmark")).current_dir(folder).args(["conditions", "tile"]).output();
+    let output = output.unwrap();
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0));
+    let refused = String::from_utf8(output.stderr).unwrap();
     assert!(refused.contains("nothing is stated of the conditions of the runs: write conditions.csv"), "{refused}");
 }

@@ -29,6 +29,7 @@ mod sensitivity;
 mod simulate;
 mod solve;
 mod streams;
+mod survey;
 mod terminal;
 mod together;
 mod watch;

@@ -35,6 +35,7 @@ use clusters::Combined;
 use of_runs::Runs;
 
 pub use between::Between;
+pub(crate) use between::between;
 pub use numbers::Number;
 pub use stated::{Condition, Kind, SESSION};
 

@@ -48,6 +48,7 @@ pub mod setup;
 pub mod simulate;
 pub mod solve;
 pub mod stats;
+pub mod survey;
 pub mod synchronise;
 pub mod watch;
 

@@ -50,6 +50,7 @@ results! {
     setup;
     solution: Solution;
     study: MonteCarlo;
+    survey: Survey;
     sweep: Sweep;
     tolerance: Tolerance;
     track_comparison: TrackComparison;

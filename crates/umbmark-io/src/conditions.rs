@@ -16,6 +16,8 @@ use umbmark_core::prose::counted;
 pub(super) const CONDITIONS: &str = "conditions.csv";
 const RUN: &str = "run";
 const EXPECTED: &str = "run,floor,load_kg";
+/// So many names of runs are told where one is not found.
+const FIRST: usize = 4;
 /// The largest number believed.
 const LARGEST: f64 = 1e12;
 
@@ -46,10 +48,13 @@ pub(super) fn read_conditions(probe: &Probe, data: &mut Dataset) -> Result<(), D
             if !probe.is_folder {
                 continue;
             }
-            let names = data.runs.iter().map(|run| run.name.as_str());
-            let near = umbmark_core::parameter::nearest(&name, names).map(|near| format!("did you mean \"{near}\"? "));
-            let remedy = format!("{}inspect shows the names of all runs", near.unwrap_or_default());
-            return Err(wrong_run(&file, line, &name, "the name of a run of this dataset, as cw_01", &remedy));
+            let names: Vec<&str> = data.runs.iter().map(|run| run.name.as_str()).collect();
+            let near = umbmark_core::parameter::nearest(&name, names.iter().copied());
+            let near = near.map_or(String::new(), |near| format!("did you mean {}? ", quoted(near)));
+            let more = if names.len() > FIRST { ", ..." } else { "" };
+            let first: Vec<String> = names.iter().take(FIRST).map(|name| quoted(name)).collect();
+            let remedy = format!("{near}the runs are {}{more}", first.join(", "));
+            return Err(wrong_run(&file, line, &name, "the name of a run of this dataset", &remedy));
         };
         if let Some((first, _)) = stated.insert(run, (line, values)) {
             let remedy = format!("line {first} has the same run; keep one of the two rows");

@@ -1,5 +1,6 @@
-//! `compare`, `diagnose`, `fit`, `learn`, `solve`, `changed` and `conditions`.
+//! `compare`, `diagnose`, `fit`, `learn`, `solve`, `changed`, `conditions` and `survey`.
 
+use std::convert::Infallible;
 use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
@@ -12,6 +13,7 @@ use umbmark_core::diagnose::{self as core, Options, first_model};
 use umbmark_core::evidence::FitError;
 use umbmark_core::result::{self, Comparison, TrackComparison};
 use umbmark_core::solve::{self as solving, Solution};
+use umbmark_core::survey::survey as surveyed;
 use umbmark_core::{effect, evidence};
 use umbmark_io::Doubt;
 
@@ -187,6 +189,28 @@ pub fn conditions(
     let work = move |told: &Watch| told.work(|watch| divided(&shared, &start, &options, watch));
     let found = watched(py, threads, progress, work)?.map_err(refused)?;
     Ok((json(&result::Conditions::new(&found))?, told::conditions(&found)))
+}
+
+/// Many robots of one kind: a row each, and how far they are apart.
+#[pyfunction]
+pub fn survey(
+    py: Python<'_>,
+    robots: Vec<(String, Py<Dataset>)>,
+    diagnosis: bool,
+    options: (f64, i64, u64),
+    return_poses: bool,
+    #[pyo3(from_py_with = threads)] threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(String, String)> {
+    let options = options_of(options, return_poses)?;
+    let (names, data): (Vec<String>, Vec<_>) =
+        robots.into_iter().map(|(name, data)| (name, Arc::clone(&data.get().0))).unzip();
+    let work = move |told: &Watch| {
+        let load = |place: usize| Ok::<_, Infallible>(Arc::clone(&data[place]));
+        told.work(|watch| surveyed(&names, load, diagnosis, &options, watch))
+    };
+    let found = watched(py, threads, progress, work)?;
+    Ok((json(&result::Survey::new(&found, &options))?, told::survey(&found)))
 }
 
 fn solved(

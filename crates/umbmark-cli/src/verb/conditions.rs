@@ -3,9 +3,11 @@
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 
 use umbmark_core::conditions::{Asked, Conditions, Estimate, Kind, conditions};
 use umbmark_core::result;
+use umbmark_core::watch::Watch;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
@@ -44,7 +46,9 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         ends_only: arguments.return_poses,
         ..umbmark_core::diagnose::Options::default()
     };
-    let found = session.watched("% of the runs", |watch| conditions(&data, &model, &options, watch))??;
+    let stop = AtomicBool::new(false);
+    let found = session
+        .told("% of the runs", |progress| conditions(&data, &model, &options, &Watch { stop: &stop, progress }))??;
     if session.json() {
         session.print_json(&result::Conditions::new(&found))?;
     } else {

@@ -22,13 +22,17 @@ pub struct Between {
     pub interval: Interval,
     /// Each value, drawn towards the mean.
     pub pooled: Vec<f64>,
+    /// The mean of all levels, μ.
+    pub mean: f64,
+    /// Its standard error.
+    pub mean_error: f64,
 }
 
 /// Steps of a search that halves; 2^-200 is nothing.
 const HALVINGS: usize = 200;
 
 /// Of values with their standard errors; `None` for fewer than two.
-pub(super) fn between(values: &[f64], errors: &[f64], level: f64) -> Option<Between> {
+pub(crate) fn between(values: &[f64], errors: &[f64], level: f64) -> Option<Between> {
     if values.len() < 2 {
         return None;
     }
@@ -39,7 +43,7 @@ pub(super) fn between(values: &[f64], errors: &[f64], level: f64) -> Option<Betw
     // The likelihood has one maximum for values as these; a search in the logarithm finds it to a millionth.
     let likelihood = |square: f64| of_likelihood(values, &variances, square);
     let square = largest(&likelihood, most);
-    let (_, mean) = weighted(values, &variances, square);
+    let (weights, mean) = weighted(values, &variances, square);
     let pooled = values.iter().zip(&variances).map(|(x, v)| mean + square / (square + v) * (x - mean)).collect();
     let freedom = (values.len() - 1) as f64;
     let end = |share: f64| {
@@ -47,7 +51,13 @@ pub(super) fn between(values: &[f64], errors: &[f64], level: f64) -> Option<Betw
         root(&|square| q(values, &variances, square) - limit, most)
     };
     let (low, high) = (end(0.5 + 0.5 * level), end(0.5 - 0.5 * level));
-    Some(Between { deviation: square.sqrt(), interval: Interval { low: low.sqrt(), high: high.sqrt() }, pooled })
+    Some(Between {
+        deviation: square.sqrt(),
+        interval: Interval { low: low.sqrt(), high: high.sqrt() },
+        pooled,
+        mean,
+        mean_error: 1.0 / weights.sqrt(),
+    })
 }
 
 fn weighted(values: &[f64], variances: &[f64], square: f64) -> (f64, f64) {

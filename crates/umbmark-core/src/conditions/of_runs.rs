@@ -11,11 +11,12 @@ use crate::changed::is_of_test;
 use crate::dataset::Dataset;
 use crate::effect::Model;
 use crate::evidence::ends::names;
-use crate::evidence::tracks::{Projected, System, fit, trusted, without_silent_taken};
-use crate::evidence::{AnyEvidence, Ends, Evidence, FitError, Level, ends};
+use crate::evidence::tracks::{self, Projected, System, fit, trusted, without_silent_taken};
+use crate::evidence::{Ends, Evidence, FitError, Level, ends};
 use crate::likelihood::{Fitted, Noise, Observed};
 use crate::watch::Watch;
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// A direction in which a run has less than this share of its largest information says nothing.
@@ -56,15 +57,16 @@ enum Kind {
 impl Runs {
     pub fn of(data: &Dataset, level: Level) -> Result<Runs, FitError> {
         let mut names: Vec<String> = Vec::new();
-        let evidence = match AnyEvidence::of(data, level)? {
-            AnyEvidence::Ends(ends) => {
+        let evidence = match level {
+            Level::Ends => {
+                let ends = Ends::examined(data)?;
                 ends.check_columns()?;
                 names.extend(ends.runs.iter().map(|run| run.name.clone()));
                 Kind::Ends(Box::new(ends))
             }
-            AnyEvidence::Tracks(_) => {
-                let sets = sets(data);
-                let observed = sets.iter().map(crate::evidence::tracks::of).collect::<Result<Vec<_>, _>>()?;
+            Level::Tracks => {
+                let of_set = |set: &Cow<Dataset>| tracks::of(set);
+                let observed = sets(data).iter().map(of_set).collect::<Result<Vec<_>, _>>()?;
                 for set in &observed {
                     set.check_columns()?;
                     for run in &set.runs {
@@ -156,14 +158,14 @@ impl Runs {
 }
 
 /// The datasets that were read as one, each by itself.
-fn sets(data: &Dataset) -> Vec<Dataset> {
+fn sets(data: &Dataset) -> Vec<Cow<'_, Dataset>> {
     if data.sessions.is_empty() {
-        return vec![data.clone()];
+        return vec![Cow::Borrowed(data)];
     }
     let ends = data.sessions.iter().skip(1).map(|session| session.first).chain([data.runs.len()]);
     let part = |(session, end): (&crate::dataset::Session, usize)| {
         let path = data.path.clone();
-        Dataset { runs: data.runs[session.first..end].to_vec(), sessions: Vec::new(), path, ..without_runs(data) }
+        Cow::Owned(Dataset { runs: data.runs[session.first..end].to_vec(), path, ..without_runs(data) })
     };
     data.sessions.iter().zip(ends).map(part).collect()
 }

@@ -90,7 +90,7 @@ fn a_wheelbase_that_differs_between_floors_is_named_and_its_difference_is_right_
         assert_eq!((shared.number.parameter, shared.depends_on.len()), ("e_d", 0));
         assert!(is_near(&shared.value, 1.002), "{shared:?}");
         assert!(
-            found.sentence().starts_with("The effective wheelbase, E_b differs between sessions (p < 0.001): tile "),
+            found.sentence().starts_with("The effective wheelbase, E_b, differs between sessions (p < 0.001): tile "),
             "{}",
             found.sentence()
         );

@@ -33,12 +33,12 @@ pub(super) fn sentence(found: &Conditions) -> String {
             (Kind::Amount(_), true) => format!("These runs show no dependence on {}", called(of)),
             (Kind::Amount(_), false) => format!("No dependence on {} is shown", called(of)),
         };
-        said.push(format!("{what} of {}; in brackets what 80 % of such tests would have shown.", names.join(", ")));
+        said.push(format!("{what} for {}; in brackets what 80 % of such tests would have shown.", names.join(", ")));
     }
     let shared: Vec<String> = found.numbers.iter().filter(|number| number.depends_on.is_empty()).map(value).collect();
     if !shared.is_empty() {
-        let are = if shared.len() == 1 { "is one value" } else { "are one value each" };
-        said.push(format!("For all runs, {are}: {}.", shared.join(", ")));
+        let what = if shared.len() == 1 { "One value holds" } else { "These values hold" };
+        said.push(format!("{what} for all runs: {}.", shared.join(", ")));
     }
     said.join(" ")
 }
@@ -65,7 +65,8 @@ fn digits(size: f64) -> usize {
 fn differs(found: &Conditions, asked: &Asked) -> String {
     let of = &found.conditions[asked.condition];
     let p = if asked.p_adjusted < 1e-3 { "p < 0.001".to_owned() } else { format!("p = {:.3}", asked.p_adjusted) };
-    let meaning = &asked.meaning;
+    // What stands behind a comma is named beside the number.
+    let meaning = if asked.meaning.contains(',') { format!("{},", asked.meaning) } else { asked.meaning.clone() };
     if let Some(slope) = &asked.slope {
         let verb = if slope.value > 0.0 { "grows" } else { "falls" };
         let half = slope.interval.high - slope.value;
@@ -83,7 +84,8 @@ fn differs(found: &Conditions, asked: &Asked) -> String {
         .collect();
     let largest = asked.largest.as_ref().map(|largest| {
         let half = largest.by.interval.high - largest.by.value;
-        format!(" {} is larger than {} by {}.", largest.high, largest.low, with_error(largest.by.value, half))
+        let by = with_error(largest.by.value, half);
+        format!(" The largest difference, {} less {}, is {by}.", largest.high, largest.low)
     });
     format!(
         "The {meaning} differs between {} ({p}): {}.{}",

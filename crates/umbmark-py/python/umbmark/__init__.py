@@ -14,7 +14,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``compare``, ``diagnose``          what models explain, and what they are missing
 ``solve``                          the one answer: what to write into the robot
 ``changed``                        what changed of a robot between two tests
-``conditions``                     which of its numbers depend on floor, load, session or temperature
+``conditions``                     which of its numbers depend on floor, load or day
 ``watch``                          whether a robot that is tested again and again changes
 ``apply``                          corrected odometry from counts and a model
 ``tracks``                         measured runs beside odometry and a model: residuals as arrays
@@ -28,6 +28,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``paper``                          the experiments of the paper, beside its numbers
 ``plan``, ``separate``             how many runs, and which experiment, before any is driven
 ``Robot``, ``Path``, ``Model``     what all of it is about; ``effects`` lists what there is
+``survey``                         many robots: a row each, and how far they are apart
 ``each``, ``fleet``                one of these calls for many robots, in parallel
 ``umbmark.results``                the classes of the parts of results, for annotations
 ``umbmark.distributed``            studies on Dask, Ray, joblib or any other executor
@@ -67,6 +68,7 @@ from umbmark._report import Report, figures, plot, report
 from umbmark._scores import Score, score
 from umbmark._sensitivity import Sensitivity, sensitivity
 from umbmark._solution import Solution, solve
+from umbmark._survey import Survey, survey
 from umbmark._sweep import Sweep, sweep
 from umbmark._tolerance import Tolerance, tolerance
 from umbmark._tracks import Track, Tracks, tracks
@@ -144,6 +146,7 @@ __all__ = [
     "Shape",
     "Solution",
     "Study",
+    "Survey",
     "Sweep",
     "Tolerance",
     "Track",
@@ -185,6 +188,7 @@ __all__ = [
     "separate",
     "simulate",
     "solve",
+    "survey",
     "sweep",
     "tolerance",
     "tracks",

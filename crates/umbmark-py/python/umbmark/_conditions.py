@@ -74,8 +74,8 @@ def conditions(
     >>> noisy = umbmark.Model().add("wheel_noise", k_sqrt_m=0.0002)
     >>> tile = umbmark.simulate(noisy, reference_rate_hz=0)
     >>> felt = umbmark.simulate(noisy.add("wheelbase", e_b=1.01), reference_rate_hz=0, seed=2)
-    >>> arrays = [[*a.returns(way), *b.returns(way)] for a, b in [(tile, felt)] for way in ("cw", "ccw")]
-    >>> data = umbmark.Dataset.from_arrays(*arrays, robot=tile.robot, path=tile.path)
+    >>> cw, ccw = ([*tile.returns(way), *felt.returns(way)] for way in ("cw", "ccw"))
+    >>> data = umbmark.Dataset.from_arrays(cw, ccw, robot=tile.robot, path=tile.path)
     >>> floors = (["tile"] * 5 + ["felt"] * 5) * 2
     >>> found = umbmark.conditions(data.with_conditions(floor=floors))
     >>> [number.key for number in found.numbers if number.depends_on]
@@ -83,7 +83,5 @@ def conditions(
     """
     loaded = data_of(data)
     with Bar(progress, 1000, "steps") as bar:
-        document, text = _umbmark.conditions(
-            loaded, model, size, return_poses, threads, bar.at
-        )
+        document, text = _umbmark.conditions(loaded, model, size, return_poses, threads, bar.at)
     return Conditions._of(document, text=text)

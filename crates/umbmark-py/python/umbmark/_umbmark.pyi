@@ -30,8 +30,8 @@ __all__ = [
     "calibrate",
     "calibrate_gears",
     "changed",
-    "conditions",
     "compare",
+    "conditions",
     "diagnose",
     "effects",
     "export",
@@ -54,6 +54,7 @@ __all__ = [
     "separate",
     "simulate",
     "solve",
+    "survey",
     "sweep",
     "tolerance",
     "tracks",
@@ -231,7 +232,7 @@ class Dataset:
     @property
     def conditions(self) -> dict[str, list[str | float | None]]: ...
     def with_conditions(
-        self, **conditions: str | float | None | Iterable[str | float | None]
+        self, **conditions: str | float | Iterable[str | float | None] | None
     ) -> Dataset: ...
     def __len__(self) -> int: ...
     @overload
@@ -527,6 +528,14 @@ def conditions(
     data: Dataset,
     start: Model | None,
     size: float,
+    return_poses: bool,
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> tuple[str, str]: ...
+def survey(
+    robots: Sequence[tuple[str, Dataset]],
+    diagnosis: bool,
+    options: tuple[float, int, int],
     return_poses: bool,
     threads: int,
     progress: Callable[[int], object] | None,
