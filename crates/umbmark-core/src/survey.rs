@@ -4,10 +4,10 @@
 //! varies among robots with a standard deviation τ of its own beside the errors:
 //!
 //! ```text
-//! x_i ~ N(μ, τ² + s_i²)
+//! x_i ~ N(μ, τ² + s²)
 //! ```
 //!
-//! by restricted maximum likelihood: what remains of the spread once the errors of the tests are taken off is the tolerance with which such robots are
+//! with the mean s² of all s_i², each of which is known by few runs, by restricted maximum likelihood: what remains of the spread once the errors of the tests are taken off is the tolerance with which such robots are
 //! made. A robot stands out if |x_i - median| / √(τ₀² + s_i²), with τ₀ from the median absolute deviation, is larger than chance makes in so many robots and
 //! numbers (Student's t, Holm); such robots are left out of μ and τ.
 //!
@@ -207,10 +207,11 @@ fn among(rows: &[Row], wanted: Number, level: f64) -> Option<Among> {
         return None;
     }
     let values: Vec<f64> = usual.iter().map(|own| own.value).collect();
-    let errors: Vec<f64> = usual.iter().map(|own| own.standard_error).collect();
-    let found = between(&values, &errors, level)?;
+    // Each error is known by few runs: weights of their own would favour those that are too small by chance, and show a spread where there is none.
+    let squares: Vec<f64> = usual.iter().map(|own| own.standard_error * own.standard_error).collect();
+    let error = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    let found = between(&values, &vec![error; values.len()], level)?;
     let half = student_t_quantile(0.5 + 0.5 * level, (usual.len() - 1) as f64) * found.mean_error;
-    let squares = errors.iter().map(|error| error * error).sum::<f64>();
     Some(Among {
         number: wanted,
         robots: usual.len(),
@@ -218,7 +219,7 @@ fn among(rows: &[Row], wanted: Number, level: f64) -> Option<Among> {
         interval: Interval::around(found.mean, half),
         deviation: found.deviation,
         deviation_interval: found.interval,
-        error: (squares / usual.len() as f64).sqrt(),
+        error,
     })
 }
 
