@@ -63,6 +63,6 @@ def test_conditions_are_kept_by_runs_replaced_by_name_and_bad_ones_are_named() -
     with pytest.raises(TypeError, match="floor must be words or numbers"):
         data.with_conditions(floor=[object()] * 3)  # type: ignore[list-item]
     with pytest.raises(umbmark.FitError, match="nothing is stated of the conditions of the runs"):
-        umbmark.conditions(data)
+        umbmark.conditions(two_floors())
     with pytest.raises(ValueError, match="size"):
         umbmark.conditions(stated, size=2)
