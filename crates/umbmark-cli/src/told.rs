@@ -3,6 +3,7 @@
 use umbmark_core::calibrate::Calibration;
 use umbmark_core::changed::Changed;
 use umbmark_core::compare::Compared;
+use umbmark_core::conditions::Conditions;
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Diagnosis, Options};
 use umbmark_core::drift::{Arrived, Watched};
@@ -12,6 +13,7 @@ use umbmark_core::monte_carlo::{Ensemble, Metric, Sweep, SweepPoint};
 use umbmark_core::result::Study;
 use umbmark_core::score::{Convention, Score};
 use umbmark_core::solve::Solution;
+use umbmark_core::survey::Survey;
 use umbmark_plot::render::terminal::Look;
 
 pub use crate::plan_report::{Known, Report as Plan, Separation};
@@ -24,9 +26,10 @@ use crate::plan_report;
 use crate::sweep::SweepReport;
 use crate::tracks_report;
 use crate::verb::{
-    calibrate as calibrating, changed as changing, compare as comparing, diagnose as diagnosing, fit as fitting,
+    calibrate as calibrating, changed as changing, compare as comparing, conditions as dividing,
+    diagnose as diagnosing, fit as fitting,
 };
-use crate::verb::{inspect as inspecting, learn as learning, score as scoring, watch as watching};
+use crate::verb::{inspect as inspecting, learn as learning, score as scoring, survey as surveying, watch as watching};
 
 /// Of `score`; without a dataset, the return errors are not drawn.
 pub fn score(data: Option<&Dataset>, score: &Score, convention: Convention) -> String {
@@ -71,6 +74,16 @@ pub fn solution(solution: &Solution, options: &Options) -> String {
 /// Of `changed`.
 pub fn changed(found: &Changed) -> String {
     changing::told(found)
+}
+
+/// Of `conditions`.
+pub fn conditions(found: &Conditions) -> String {
+    dividing::told(found)
+}
+
+/// Of `survey`.
+pub fn survey(found: &Survey) -> String {
+    surveying::told(found, surveying::MOST_ROWS)
 }
 
 /// Of `watch`.

@@ -44,6 +44,10 @@ verbs! {
     Compare(compare),
     /// Find what changed of a robot between two tests
     Changed(changed),
+    /// Find which numbers of a robot depend on session, floor, load or temperature
+    Conditions(conditions),
+    /// Fit and diagnose many robots: a row each, how far they are apart, which stand out
+    Survey(survey),
     /// Watch a robot that is tested again and again: did it change, since when, and what of it
     Watch(watch),
     /// Correct the odometry of a log by a model, with its covariance; no reference is needed

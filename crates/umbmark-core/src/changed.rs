@@ -32,6 +32,7 @@ use crate::stats::{Interval, student_t_quantile, t_two_sided};
 use crate::watch::Watch;
 
 pub use alone::Alone;
+pub(crate) use model::is_of_test;
 pub use quantities::{Of, Quantity};
 
 /// A change as large as this share of tests would have found is told as what could be seen.

@@ -47,6 +47,34 @@ pub struct Session {
     pub other_path: bool,
 }
 
+/// What is stated of a condition.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Stated {
+    /// In words: one of several levels.
+    Word(String),
+    /// By a number, in the unit of the condition's name.
+    Number(f64),
+}
+
+impl Stated {
+    /// As it stands in files.
+    pub fn word(&self) -> String {
+        match self {
+            Stated::Word(word) => word.clone(),
+            Stated::Number(number) => number.to_string(),
+        }
+    }
+}
+
+/// Under which conditions a run was driven: session, floor, load, temperature.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunConditions {
+    /// The run's name.
+    pub run: String,
+    /// What is stated, each condition by its name.
+    pub stated: Vec<(String, Stated)>,
+}
+
 /// A robot and its runs.
 #[derive(Clone, Debug, Default)]
 pub struct Dataset {
@@ -60,6 +88,8 @@ pub struct Dataset {
     pub runs: Vec<Run>,
     /// The sessions of its runs, in order; empty for a single one.
     pub sessions: Vec<Session>,
+    /// The conditions of its runs, where some are stated.
+    pub conditions: Vec<RunConditions>,
     /// The clocks that were set while reading: one for each log whose poses came from a track with its own clock.
     pub clocks: Vec<RunClock>,
     /// The topics that were read: those of each MCAP file and bag.

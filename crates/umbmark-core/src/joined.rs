@@ -115,6 +115,7 @@ impl Dataset {
             named(&mut data, &set);
             joined.clocks.append(&mut data.clocks);
             joined.topics.append(&mut data.topics);
+            joined.conditions.append(&mut data.conditions);
             joined.warnings.append(&mut data.warnings);
             if data.reference_frame != joined.reference_frame {
                 joined.reference_frame = ReferenceFrame::default();
@@ -144,6 +145,7 @@ fn in_set(set: &str, run: &str) -> String {
 fn named(data: &mut Dataset, set: &str) {
     data.clocks.iter_mut().for_each(|clock| clock.run = in_set(set, &clock.run));
     data.topics.iter_mut().for_each(|topics| topics.run = in_set(set, &topics.run));
+    data.conditions.iter_mut().for_each(|stated| stated.run = in_set(set, &stated.run));
 }
 
 /// Makes a dataset one of the robot of the first; says what was different.

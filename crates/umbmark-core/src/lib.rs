@@ -15,6 +15,7 @@ pub mod apply;
 pub mod calibrate;
 pub mod changed;
 pub mod compare;
+pub mod conditions;
 pub mod dataset;
 pub mod diagnose;
 pub mod drift;
@@ -47,6 +48,7 @@ pub mod setup;
 pub mod simulate;
 pub mod solve;
 pub mod stats;
+pub mod survey;
 pub mod synchronise;
 pub mod watch;
 

@@ -29,6 +29,7 @@ results! {
     clock;
     closure;
     comparison: Comparison;
+    conditions: Conditions;
     diagnosis: Diagnosis;
     effect;
     findings;
@@ -49,6 +50,7 @@ results! {
     setup;
     solution: Solution;
     study: MonteCarlo;
+    survey: Survey;
     sweep: Sweep;
     tolerance: Tolerance;
     track_comparison: TrackComparison;

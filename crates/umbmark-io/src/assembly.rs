@@ -234,7 +234,8 @@ impl Assembly {
         let Assembly { robot, path, reference_frame, mut runs, clocks, topics, warnings, .. } = self;
         runs.sort_by_key(|run| (run.test, run.direction, run.number));
         let sessions = Vec::new();
-        Ok(Dataset { robot, path, reference_frame, runs, sessions, clocks, topics, warnings })
+        let conditions = Vec::new();
+        Ok(Dataset { robot, path, reference_frame, runs, sessions, conditions, clocks, topics, warnings })
     }
 
     fn push(&mut self, run: Run, file: &str, line: usize) -> Result<(), DatasetError> {

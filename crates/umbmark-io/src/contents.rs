@@ -1,5 +1,6 @@
 //! Logs found in a place, and what they hold before anything is known of their robot.
 
+use super::conditions::CONDITIONS;
 use super::error::{DatasetError, LineProblem};
 use super::layout::csv::{RETURNS, RUNS, robot_beside};
 use super::layout::messages::Topics;
@@ -34,7 +35,8 @@ pub(super) fn logs_in(place: &Path) -> Result<Vec<FoundLog>, DatasetError> {
 
 fn in_folder(folder: &Path) -> Result<Vec<FoundLog>, DatasetError> {
     let paths = names_in(folder)?.into_iter().map(|name| folder.join(name));
-    let logs = paths.filter(|path| is_log(path) && stem(path).to_lowercase() != stem(Path::new(RETURNS)));
+    let no_logs = [RETURNS, CONDITIONS].map(|name| stem(Path::new(name)));
+    let logs = paths.filter(|path| is_log(path) && !no_logs.contains(&stem(path).to_lowercase()));
     Ok(logs.map(|path| FoundLog { name: stem(&path), path }).collect())
 }
 

@@ -4,6 +4,7 @@
 
 use self::messages::{OpenMessages, Opened, Topics};
 use super::assembly::{Assembly, Tracked};
+use super::conditions::read_conditions;
 use super::error::DatasetError;
 use super::probe::Probe;
 use super::remedy::Words;
@@ -162,7 +163,11 @@ pub(super) fn load(path: &Path, topics: &Topics, robot: Option<&RobotFile>) -> R
 fn load_place(path: &Path, topics: &Topics, robot: Option<&RobotFile>) -> Result<Dataset, DatasetError> {
     let probe = Probe { robot: robot.cloned(), ..Probe::of(path)? };
     match choose(|layout| layout.data, |(recognises, _)| recognises(&probe)) {
-        Some((_, read)) => read(&probe, topics),
+        Some((_, read)) => {
+            let mut data = read(&probe, topics)?;
+            read_conditions(&probe, &mut data)?;
+            Ok(data)
+        }
         None => Ok(Dataset::default()),
     }
 }

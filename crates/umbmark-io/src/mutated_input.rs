@@ -6,6 +6,7 @@
 mod damage;
 
 use super::closures::{Closure, Marks, closures};
+use super::conditions::parse_conditions;
 use super::error::DatasetError;
 use super::filled_in::drop_filled_in;
 use super::layout::csv::{Measured, parse_returns, parse_tick_log};
@@ -19,7 +20,7 @@ use super::stale::drop_stale;
 use super::start_frame::move_to_start;
 pub(super) use damage::damage;
 use std::io::Read;
-use umbmark_core::dataset::TickLog;
+use umbmark_core::dataset::{Stated, TickLog};
 use umbmark_core::drive::{DriveKind, Robot};
 use umbmark_core::random::Stream;
 use umbmark_core::run::{PoseRow, ReferenceTrack, place};
@@ -99,6 +100,18 @@ fn damaged_logs_of_steps() {
     survive(good, 17, |text| {
         parse_tick_log(source(text), DriveKind::default(), &mut Vec::new())
             .is_ok_and(|recording| finished(recording, None))
+    });
+}
+
+#[test]
+fn damaged_conditions() {
+    survive("run,floor,load_kg\ncw_01,tile,0\nccw_01,\"felt, thick\",2.5\nccw_02,,-1e3\n", 19, |text| {
+        let rows = parse_conditions(source(text));
+        rows.is_ok_and(|rows| {
+            let finite = |value: &Stated| !matches!(value, Stated::Number(number) if !number.is_finite());
+            assert!(rows.iter().flat_map(|row| &row.values).all(|(_, value)| finite(value)));
+            rows.len() > 1
+        })
     });
 }
 

@@ -31,7 +31,7 @@ fn together<P: AsRef<Path>>(
 }
 
 /// A name for each place.
-fn names(places: &[&Path]) -> Result<Vec<String>, DatasetError> {
+pub(super) fn names(places: &[&Path]) -> Result<Vec<String>, DatasetError> {
     let parts: Vec<Vec<String>> = places.iter().map(|place| parts(place)).collect();
     let longest = parts.iter().map(Vec::len).max().unwrap_or(0);
     let by = |count: usize| parts.iter().map(move |parts| parts[parts.len().saturating_sub(count)..].join("/"));

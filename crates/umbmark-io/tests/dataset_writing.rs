@@ -1,7 +1,7 @@
 //! Datasets are written whole or not at all, and read back as they were.
 
 use std::path::Path;
-use umbmark_core::dataset::{Dataset, ReferencePose, ReturnError, Run, TickLog};
+use umbmark_core::dataset::{Dataset, ReferencePose, ReturnError, Run, RunConditions, Stated, TickLog};
 use umbmark_core::drive::{DifferentialDrive, Encoder, Robot};
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::{self, Direction, SpeedProfile};
@@ -224,4 +224,35 @@ fn counts_a_little_below_zero_are_read_back_to_the_last_bit() {
     read.sort_by(|a, b| a[299].total_cmp(&b[299]));
     written.sort_by(|a, b| a[299].total_cmp(&b[299]));
     assert_eq!(read, written);
+}
+
+#[test]
+fn conditions_are_read_written_and_read_back_and_what_would_become_a_number_is_not_written() {
+    let place = tempfile::tempdir().unwrap();
+    let (first, again) = (place.path().join("first"), place.path().join("again"));
+    umbmark_io::save(&awkward(1), &first, Existing::Keep).unwrap();
+    let names: Vec<String> = umbmark_io::load(&first).unwrap().runs.iter().map(|run| run.name.clone()).collect();
+    let rows = format!("Run,Floor,load_kg\n{},\"felt, thick\",2.5\n{},tile,\n", names[1], names[0]);
+    std::fs::write(first.join("conditions.csv"), rows).unwrap();
+    let mut read = umbmark_io::load(&first).unwrap();
+    let (word, number) = (|word: &str| Stated::Word(word.into()), Stated::Number(2.5));
+    let stated = |run: usize, stated: &[(&str, &Stated)]| RunConditions {
+        run: names[run].clone(),
+        stated: stated.iter().map(|(name, value)| ((*name).to_owned(), (*value).clone())).collect(),
+    };
+    assert_eq!(
+        read.conditions,
+        [stated(0, &[("floor", &word("tile"))]), stated(1, &[("floor", &word("felt, thick")), ("load_kg", &number)])]
+    );
+    assert!(read.warnings.iter().any(|warning| warning.contains("have no row")), "{:?}", read.warnings);
+    umbmark_io::save(&read, &again, Existing::Keep).unwrap();
+    assert_eq!(umbmark_io::load(&again).unwrap().conditions, read.conditions);
+    read.conditions[0].stated[0].1 = word("7");
+    let refused = umbmark_io::save(&read, place.path().join("third"), Existing::Keep).unwrap_err();
+    assert!(refused.to_string().contains("a number stands where a word is meant"), "{refused}");
+    // Of all runs.
+    std::fs::write(first.join("conditions.csv"), "floor\nstone\n").unwrap();
+    let read = umbmark_io::load(&first).unwrap();
+    assert_eq!(read.conditions.len(), read.runs.len());
+    assert!(read.conditions.iter().all(|run| run.stated == [("floor".to_owned(), word("stone"))]));
 }

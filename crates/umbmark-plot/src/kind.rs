@@ -36,6 +36,7 @@ register! {
     laws,
     confusability,
     parameters,
+    conditions,
     correlations,
     monte_carlo,
     runs,

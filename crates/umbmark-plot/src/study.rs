@@ -8,6 +8,7 @@ use std::sync::{Arc, OnceLock};
 
 use umbmark_core::calibrate::{self, Calibration, Estimate, Method, calibrate};
 use umbmark_core::compare::{Comparison, TrackComparison, compare_returns, compare_tracks};
+use umbmark_core::conditions::{Conditions, conditions};
 use umbmark_core::dataset::{Dataset, ReturnError};
 use umbmark_core::diagnose::{self, Diagnosis, diagnose};
 use umbmark_core::effect::{Model, TestKind};
@@ -65,6 +66,7 @@ pub struct Study {
     calibration: OnceLock<Result<Calibration, Absent>>,
     solution: OnceLock<Result<Solution, Absent>>,
     diagnosis: OnceLock<Result<Diagnosis, Absent>>,
+    conditions: OnceLock<Result<Conditions, Absent>>,
     comparison: OnceLock<Result<Comparison, Absent>>,
     along: OnceLock<Result<TrackComparison, Absent>>,
     chance: OnceLock<Result<Chance, Absent>>,
@@ -91,6 +93,7 @@ impl Study {
             calibration: OnceLock::new(),
             solution: OnceLock::new(),
             diagnosis: OnceLock::new(),
+            conditions: OnceLock::new(),
             comparison: OnceLock::new(),
             along: OnceLock::new(),
             chance: OnceLock::new(),
@@ -192,6 +195,18 @@ impl Study {
             Some((_, model)) => self
                 .once(&self.diagnosis, || diagnose(&self.data, model, &self.options.diagnose).map_err(Absent::because)),
         }
+    }
+
+    /// Which numbers of the model, or of the usual first one, depend on the conditions of the runs.
+    pub fn conditions(&self) -> Result<&Conditions, Absent> {
+        self.once(&self.conditions, || {
+            let model = match &self.given {
+                Some((_, model)) => model.clone(),
+                None => diagnose::first_model(&self.data).map_err(Absent::because)?,
+            };
+            let watch = Watch { stop: &self.stop, progress: &|_| () };
+            conditions(&self.data, &model, &self.options.diagnose, &watch).map_err(Absent::because)
+        })
     }
 
     /// The model with its fitted parameters.

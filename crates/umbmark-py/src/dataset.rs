@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2, ndarray::Array2};
-use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyIterator, PySlice, PyTuple};
+use pyo3::types::{PyBytes, PyDict, PyIterator, PyList, PySlice, PyString, PyTuple};
 use serde::{Deserialize, Serialize};
 use umbmark_cli::told;
-use umbmark_core::dataset::{self as core, RunClock, RunTopics};
+use umbmark_core::dataset::{self as core, RunClock, RunConditions, RunTopics, Stated};
 use umbmark_core::result;
 use umbmark_io::export::{ExportError, UrdfFile};
 use umbmark_io::{KnownNumbers, Layout, Proposal, Recorded, Topics, assemble, read_controller, write_template};
@@ -55,7 +55,7 @@ pub struct Dataset(pub Arc<core::Dataset>);
 impl PartialEq for Dataset {
     fn eq(&self, other: &Dataset) -> bool {
         let of = |data: &Dataset| (data.0.robot.clone(), data.path(), data.0.reference_frame);
-        of(self) == of(other) && self.0.runs == other.0.runs
+        of(self) == of(other) && self.0.runs == other.0.runs && self.0.conditions == other.0.conditions
     }
 }
 
@@ -71,6 +71,8 @@ struct Rest {
     reference_frame: core::ReferenceFrame,
     runs: Vec<core::Run>,
     sessions: Vec<core::Session>,
+    #[serde(default)]
+    conditions: Vec<RunConditions>,
     clocks: Vec<RunClock>,
     topics: Vec<RunTopics>,
     warnings: Vec<String>,
@@ -259,6 +261,7 @@ impl Dataset {
             let part = core::Dataset {
                 clocks: clocks.filter(|clock| names.contains(&clock.run)).cloned().collect(),
                 topics: topics.filter(|topics| names.contains(&topics.run)).cloned().collect(),
+                conditions: self.0.conditions.iter().filter(|stated| names.contains(&stated.run)).cloned().collect(),
                 runs,
                 ..(*self.0).clone()
             };
@@ -280,6 +283,71 @@ impl Dataset {
     #[getter]
     fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.0.warnings)
+    }
+
+    /// What is stated of the conditions of its runs: each condition with its value of every run, a word or a number; None where it is not known.
+    #[getter]
+    fn conditions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let columns = PyDict::new(py);
+        for (name, _) in self.0.conditions.iter().flat_map(|stated| &stated.stated) {
+            let of_run = |run: &core::Run| {
+                let stated = self.0.conditions.iter().find(|stated| stated.run == run.name)?;
+                let (_, value) = stated.stated.iter().find(|(own, _)| own == name)?;
+                Some(match value {
+                    Stated::Word(word) => Given::Word(word.clone()),
+                    Stated::Number(number) => Given::Number(*number),
+                })
+            };
+            columns.set_item(name, PyList::new(py, self.0.runs.iter().map(of_run))?)?;
+        }
+        Ok(columns)
+    }
+
+    /// Give the same dataset with the conditions of its runs; what was stated before is kept unless it is given anew.
+    ///
+    /// Parameters
+    /// ----------
+    /// **conditions : str, number, or sequence of them
+    ///     Each condition by its name, which ends in the unit of a number: one value for all runs, or one for each run in the order of
+    ///     ``runs``; None or NaN where it is not known. Words are levels; numbers are amounts on which the robot may depend by a slope.
+    ///
+    /// Returns
+    /// -------
+    /// Dataset
+    ///
+    /// Raises
+    /// ------
+    /// TypeError, ValueError
+    ///     If a value is neither a word nor a finite number, or if there are not as many as runs; it names the condition.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import umbmark
+    /// >>> data = umbmark.Dataset.from_arrays([[0.1, 0.2, 0.0]] * 3, robot=umbmark.Robot.labmate())
+    /// >>> data.with_conditions(floor=["tile", "tile", "carpet"], load_kg=2).conditions
+    /// {'floor': ['tile', 'tile', 'carpet'], 'load_kg': [2.0, 2.0, 2.0]}
+    #[pyo3(signature = (**conditions))]
+    fn with_conditions(&self, conditions: Option<&Bound<'_, PyDict>>) -> PyResult<Dataset> {
+        let mut data = (*self.0).clone();
+        let find = |data: &core::Dataset, run: &str| {
+            let stated = data.conditions.iter().find(|stated| stated.run == run);
+            stated.map_or_else(Vec::new, |stated| stated.stated.clone())
+        };
+        let mut stated: Vec<RunConditions> = data
+            .runs
+            .iter()
+            .map(|run| RunConditions { run: run.name.clone(), stated: find(&data, &run.name) })
+            .collect();
+        for (name, values) in conditions.into_iter().flatten() {
+            let name: String = name.extract()?;
+            for (run, value) in stated.iter_mut().zip(given(&name, &values, data.runs.len())?) {
+                run.stated.retain(|(own, _)| *own != name);
+                run.stated.extend(value.map(|value| (name.clone(), value)));
+            }
+        }
+        stated.retain(|run| !run.stated.is_empty());
+        data.conditions = stated;
+        Ok(Dataset::from(data))
     }
 
     /// Give the known return errors of a direction.
@@ -372,6 +440,7 @@ impl Dataset {
             reference_frame: data.reference_frame,
             runs: data.runs.clone(),
             sessions: data.sessions.clone(),
+            conditions: data.conditions.clone(),
             clocks: data.clocks.clone(),
             topics: data.topics.clone(),
             warnings: data.warnings.clone(),
@@ -407,6 +476,45 @@ fn poses_of_files() -> Vec<String> {
     ["x_ref_m", "y_ref_m", "theta_ref_rad"].map(str::to_owned).into()
 }
 
+/// A condition as Python has it.
+#[derive(IntoPyObject)]
+enum Given {
+    Word(String),
+    Number(f64),
+}
+
+/// The values of a condition, one a run.
+fn given(name: &str, values: &Bound<'_, PyAny>, runs: usize) -> PyResult<Vec<Option<Stated>>> {
+    if values.is_instance_of::<PyString>() || values.is_none() || !values.hasattr("__iter__")? {
+        return Ok(vec![one(name, values)?; runs]);
+    }
+    let all = values.try_iter()?.map(|value| one(name, &value?)).collect::<PyResult<Vec<_>>>()?;
+    if all.len() != runs {
+        return Err(PyValueError::new_err(format!(
+            "{name} must have one value for each of {runs} runs, got {}",
+            all.len()
+        )));
+    }
+    Ok(all)
+}
+
+fn one(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Stated>> {
+    if value.is_none() {
+        return Ok(None);
+    }
+    if let Ok(word) = value.extract::<String>() {
+        return Ok((!word.is_empty()).then_some(Stated::Word(word)));
+    }
+    let number: f64 = value
+        .extract()
+        .map_err(|_| PyTypeError::new_err(format!("{name} must be words or numbers, got {}", value.get_type())))?;
+    match number {
+        _ if number.is_nan() => Ok(None),
+        _ if number.is_finite() => Ok(Some(Stated::Number(number))),
+        _ => Err(PyValueError::new_err(format!("{name} must be finite, got {number}"))),
+    }
+}
+
 /// Refuses runs that have the same number or name.
 fn all_differ(runs: &[core::Run]) -> PyResult<()> {
     let (mut names, mut numbers) = (HashMap::new(), HashMap::new());
@@ -429,9 +537,19 @@ type Pickled<'py> = (Option<Robot>, Option<Path>, Bound<'py, PyBytes>);
 
 impl Rest {
     fn with(self, robot: Option<&Robot>, path: Option<&Path>) -> Dataset {
-        let Rest { reference_frame, runs, sessions, clocks, topics, warnings } = self;
+        let Rest { reference_frame, runs, sessions, conditions, clocks, topics, warnings } = self;
         let (robot, path) = (robot.map(|robot| robot.0.clone()), path.map(|path| path.0.clone()));
-        Dataset::from(core::Dataset { robot, path, reference_frame, runs, sessions, clocks, topics, warnings })
+        Dataset::from(core::Dataset {
+            robot,
+            path,
+            reference_frame,
+            runs,
+            sessions,
+            conditions,
+            clocks,
+            topics,
+            warnings,
+        })
     }
 }
 

@@ -1,5 +1,6 @@
-//! `compare`, `diagnose`, `fit`, `learn`, `solve` and `changed`.
+//! `compare`, `diagnose`, `fit`, `learn`, `solve`, `changed`, `conditions` and `survey`.
 
+use std::convert::Infallible;
 use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
@@ -7,10 +8,12 @@ use pyo3::prelude::*;
 use umbmark_cli::told;
 use umbmark_core::changed::changed as compared;
 use umbmark_core::compare::{self as comparing, Compared};
+use umbmark_core::conditions::conditions as divided;
 use umbmark_core::diagnose::{self as core, Options, first_model};
 use umbmark_core::evidence::FitError;
 use umbmark_core::result::{self, Comparison, TrackComparison};
 use umbmark_core::solve::{self as solving, Solution};
+use umbmark_core::survey::survey as surveyed;
 use umbmark_core::{effect, evidence};
 use umbmark_io::Doubt;
 
@@ -163,6 +166,51 @@ pub fn changed(
     let work = move |told: &Watch| told.work(|watch| compared(&first, &second, &start, &options, watch));
     let found = watched(py, threads, progress, work)?.map_err(refused)?;
     Ok((json(&result::Changed::new(&found, &options))?, told::changed(&found)))
+}
+
+/// Which numbers of a robot depend on the conditions of its runs.
+#[pyfunction]
+pub fn conditions(
+    py: Python<'_>,
+    data: &Dataset,
+    start: Option<&Model>,
+    size: f64,
+    return_poses: bool,
+    #[pyo3(from_py_with = threads)] threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(String, String)> {
+    probability("size", size)?;
+    let options = Options { size, ends_only: return_poses, ..Options::default() };
+    let shared = Arc::clone(&data.0);
+    let start = match start {
+        Some(start) => start.of_data(py, &shared)?,
+        None => first_model(&shared).map_err(refused)?,
+    };
+    let work = move |told: &Watch| told.work(|watch| divided(&shared, &start, &options, watch));
+    let found = watched(py, threads, progress, work)?.map_err(refused)?;
+    Ok((json(&result::Conditions::new(&found))?, told::conditions(&found)))
+}
+
+/// Many robots of one kind: a row each, and how far they are apart.
+#[pyfunction]
+pub fn survey(
+    py: Python<'_>,
+    robots: Vec<(String, Py<Dataset>)>,
+    diagnosis: bool,
+    options: (f64, i64, u64),
+    return_poses: bool,
+    #[pyo3(from_py_with = threads)] threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(String, String)> {
+    let options = options_of(options, return_poses)?;
+    let (names, data): (Vec<String>, Vec<_>) =
+        robots.into_iter().map(|(name, data)| (name, Arc::clone(&data.get().0))).unzip();
+    let work = move |told: &Watch| {
+        let load = |place: usize| Ok::<_, Infallible>(Arc::clone(&data[place]));
+        told.work(|watch| surveyed(&names, load, diagnosis, &options, watch))
+    };
+    let found = watched(py, threads, progress, work)?;
+    Ok((json(&result::Survey::new(&found, &options))?, told::survey(&found)))
 }
 
 fn solved(

@@ -6,6 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_core::calibrate::CalibrateError;
 use umbmark_core::changed::ChangeError;
+use umbmark_core::conditions::ConditionsError;
 use umbmark_core::dataset::NoRobot;
 use umbmark_core::drift::DriftError;
 use umbmark_core::effect::{FormulaError, ModelError as CoreModelError};
@@ -49,5 +50,5 @@ exceptions! {
     ) = DatasetError, JoinError, NoRobot, ScoreError, CalibrateError, CheckpointError, DriftError, StateError;
     ModelError(UmbmarkError, "A model with an effect, a parameter, a value or a formula that there is not.")
         = CoreModelError, FormulaError;
-    FitError(UmbmarkError, "A model that cannot be fitted to these measurements.") = CoreFitError, GearError, ChangeError;
+    FitError(UmbmarkError, "A model that cannot be fitted to these measurements.") = CoreFitError, GearError, ChangeError, ConditionsError;
 }

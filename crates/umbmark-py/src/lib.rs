@@ -41,7 +41,7 @@ module! {
     calibrate: calibrate, calibrate_gears;
     checkpoint: merge;
     dataset: Dataset, init, inspect, load_dataset;
-    diagnose: changed, compare, diagnose, fit, learn, solve;
+    diagnose: changed, compare, conditions, diagnose, fit, learn, solve, survey;
     effect: effects, formula_variables;
     exception;
     export: export;

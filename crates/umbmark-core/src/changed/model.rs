@@ -5,7 +5,7 @@ use crate::effect::{ActsOn, Model, ModelError, Part};
 use crate::evidence::{Fit, FitError};
 
 /// Whether an effect belongs to the test and not to the robot: clock and mounting of the reference, and START.
-pub(super) fn is_of_test(part: &Part) -> bool {
+pub(crate) fn is_of_test(part: &Part) -> bool {
     let acts_on = part.effect.entry().map(|entry| entry.about.acts_on);
     matches!(acts_on, Some(ActsOn::Reference | ActsOn::Start))
 }

@@ -17,12 +17,14 @@ pub struct Options {
     /// Which of the significant laws is added first if no effect of the catalogue explains the repeating pattern: 1 for the one that would
     /// be taken, 2 for the first of its [`Repeated::others`](super::Repeated::others), and so on.
     pub law: usize,
+    /// Whether to work out which experiments would separate what return poses do not: half of the work.
+    pub experiments: bool,
 }
 
 impl Default for Options {
-    /// 5 %, 999 draws, seed 1, the first law.
+    /// 5 %, 999 draws, seed 1, the first law, with experiments.
     fn default() -> Self {
-        Options { size: 0.05, draws: 999, seed: 1, ends_only: false, law: 1 }
+        Options { size: 0.05, draws: 999, seed: 1, ends_only: false, law: 1, experiments: true }
     }
 }
 

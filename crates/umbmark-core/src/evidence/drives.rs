@@ -20,6 +20,8 @@ pub(crate) struct Seen {
 /// One run, ready to be predicted.
 #[derive(Clone, Debug)]
 pub(crate) struct Drive {
+    /// The run's name.
+    pub name: String,
     pub direction: Option<Direction>,
     pub track: Track,
     pub seen: Vec<Seen>,
@@ -70,7 +72,14 @@ pub(crate) fn tracked(run: &Run, robot: &Robot) -> Result<Option<Drive>, FitErro
     let Some(log) = run.log.as_ref().filter(in_room) else { return Ok(None) };
     let track = track_of(run, robot)?;
     let seen = log.reference.iter().map(|r| Seen { x: r.x, y: r.y, heading: r.heading }).collect();
-    Ok(track.map(|track| Drive { direction: run.direction, track, seen, weight: Matrix3::identity(), recorded: true }))
+    Ok(track.map(|track| Drive {
+        name: run.name.clone(),
+        direction: run.direction,
+        track,
+        seen,
+        weight: Matrix3::identity(),
+        recorded: true,
+    }))
 }
 
 fn track_of(run: &Run, robot: &Robot) -> Result<Option<Track>, FitError> {
@@ -98,7 +107,14 @@ fn ended(
     let computed: Pose2 = track.end(&Model::new(robot).chain());
     let heading = error.heading.map(|h| computed.heading + h);
     let seen = vec![Seen { x: computed.x + error.x, y: computed.y + error.y, heading }];
-    Ok(Some(Drive { direction: run.direction, track, seen, weight: Matrix3::identity(), recorded: is_recorded }))
+    Ok(Some(Drive {
+        name: run.name.clone(),
+        direction: run.direction,
+        track,
+        seen,
+        weight: Matrix3::identity(),
+        recorded: is_recorded,
+    }))
 }
 
 /// The inverse Cholesky factor of the scatter's shape.

@@ -41,6 +41,8 @@ pub(crate) struct Ends {
 /// One run.
 #[derive(Clone, Debug)]
 pub(crate) struct End {
+    /// Its name.
+    pub name: String,
     /// The path's sense; runs of paths without one count as counter-clockwise.
     pub direction: Direction,
     /// Index of the track that the odometry reports.
@@ -113,7 +115,7 @@ impl Ends {
             self.tracks.len() - 1
         });
         let seen = Pose2::new(seen.x, seen.y, seen.heading.unwrap_or(0.0));
-        self.runs.push(End { direction, track, seen, weight: drive.weight });
+        self.runs.push(End { name: drive.name, direction, track, seen, weight: drive.weight });
     }
 
     /// The same runs, with the ticks of the commanded path if it is known.
@@ -127,6 +129,11 @@ impl Ends {
         ends.tracks = Direction::BOTH.map(|direction| Arc::new(meant(direction))).into();
         ends.runs.iter_mut().for_each(|run| run.track = run.direction as usize);
         ends
+    }
+
+    /// Some of its runs, by their places.
+    pub fn only(&self, runs: &[usize]) -> Ends {
+        Ends { runs: runs.iter().map(|run| self.runs[*run].clone()).collect(), ..self.clone() }
     }
 
     /// How many coordinates an end pose has: 3, or 2 where headings were not measured.

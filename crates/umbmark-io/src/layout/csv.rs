@@ -10,6 +10,7 @@ use super::messages::Topics;
 use super::{Layout, ReadLogs, Tracks};
 use crate::RobotFile;
 use crate::assembly::Assembly;
+use crate::conditions::{CONDITIONS, conditions_text, of_runs};
 use crate::error::DatasetError;
 use crate::foreign::Foreign;
 use crate::label;
@@ -241,6 +242,7 @@ pub(crate) fn save_with(
     robot_file.reference.drifting = super::logs(data).any(|(_, log)| log.relative);
     files.insert(PathBuf::from(ROBOT), robot_file.text().into_bytes());
     files.extend(returns_text(&data.runs).map(|text| (PathBuf::from(RETURNS), text)));
+    files.extend(conditions_text(data).map(|text| (PathBuf::from(CONDITIONS), text)));
     for run in &data.runs {
         let Some(log) = &run.log else { continue };
         let name = format!("{}.{}", label::label(run.test, run.direction, run.number), format.ending);
@@ -271,6 +273,13 @@ fn check(data: &Dataset, folder: &Path, written: &Path, format: &LogFormat) -> R
     };
     if runs.len() != read.runs.len() {
         return Err(refuse("a run has neither log nor return error".into()));
+    }
+    let stated =
+        |data| of_runs(data).into_iter().map(|(run, stated)| (run.test, run.direction, run.number, stated.clone()));
+    if !stated(data).eq(stated(&read)) {
+        return Err(refuse(
+            "its conditions would not be read back as they are: a number stands where a word is meant".into(),
+        ));
     }
     match runs.iter().zip(&read.runs).find(|pair| !same(*pair)) {
         Some((run, _)) => {

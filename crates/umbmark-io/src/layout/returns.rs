@@ -25,6 +25,9 @@ fn write(data: &Dataset, folder: &Path, existing: Existing) -> Result<Vec<String
     if unknown > 0 {
         lost.push(format!("{} without a return error", counted(unknown, "run")));
     }
+    if !data.conditions.is_empty() {
+        lost.push("the conditions of the runs: a return sheet holds end poses only".into());
+    }
     if data.robot.is_some() {
         lost.push("robot and path: copy robot.toml beside the sheet".into());
     }

@@ -14,6 +14,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``compare``, ``diagnose``          what models explain, and what they are missing
 ``solve``                          the one answer: what to write into the robot
 ``changed``                        what changed of a robot between two tests
+``conditions``                     which of its numbers depend on floor, load or day
 ``watch``                          whether a robot that is tested again and again changes
 ``apply``                          corrected odometry from counts and a model
 ``tracks``                         measured runs beside odometry and a model: residuals as arrays
@@ -27,6 +28,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``paper``                          the experiments of the paper, beside its numbers
 ``plan``, ``separate``             how many runs, and which experiment, before any is driven
 ``Robot``, ``Path``, ``Model``     what all of it is about; ``effects`` lists what there is
+``survey``                         many robots: a row each, and how far they are apart
 ``each``, ``fleet``                one of these calls for many robots, in parallel
 ``umbmark.results``                the classes of the parts of results, for annotations
 ``umbmark.distributed``            studies on Dask, Ray, joblib or any other executor
@@ -41,6 +43,7 @@ from umbmark._arguments import Numbers, Seed
 from umbmark._calibration import Calibration, GearCalibration, calibrate, calibrate_gears
 from umbmark._changed import Changed, changed
 from umbmark._comparison import Comparison, TrackComparison, compare
+from umbmark._conditions import Conditions, conditions
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
 from umbmark._documents import Correction, Effect, Setup
 from umbmark._each import Each, each, fleet
@@ -65,6 +68,7 @@ from umbmark._report import Report, figures, plot, report
 from umbmark._scores import Score, score
 from umbmark._sensitivity import Sensitivity, sensitivity
 from umbmark._solution import Solution, solve
+from umbmark._survey import Survey, survey
 from umbmark._sweep import Sweep, sweep
 from umbmark._tolerance import Tolerance, tolerance
 from umbmark._tracks import Track, Tracks, tracks
@@ -100,6 +104,7 @@ __all__ = [
     "Calibration",
     "Changed",
     "Comparison",
+    "Conditions",
     "ConversionWarning",
     "Corrected",
     "Correction",
@@ -141,6 +146,7 @@ __all__ = [
     "Shape",
     "Solution",
     "Study",
+    "Survey",
     "Sweep",
     "Tolerance",
     "Track",
@@ -156,6 +162,7 @@ __all__ = [
     "calibrate_gears",
     "changed",
     "compare",
+    "conditions",
     "diagnose",
     "each",
     "effects",
@@ -181,6 +188,7 @@ __all__ = [
     "separate",
     "simulate",
     "solve",
+    "survey",
     "sweep",
     "tolerance",
     "tracks",

@@ -846,6 +846,222 @@ class OnCircle(Record, frozen=True):
     explained: bool
 
 
+class Conditions(Result, frozen=True):
+    """Which numbers of a robot depend on which conditions.
+
+    Attributes
+    ----------
+    differs : bool
+        Whether a number depends on a condition by more than chance.
+    sentence : str
+        The answer in words.
+    remarks : tuple[str, ...]
+        What has to be known of the answer, a sentence each.
+    numbers : tuple[NumberOfRobot, ...]
+        The numbers of the robot.
+    asked : tuple[ByCondition, ...]
+        Every number under every condition.
+    conditions : tuple[AskedCondition, ...]
+        The conditions.
+    same : tuple[str, ...]
+        Conditions that are the same in all runs.
+    runs : int
+        Number of runs.
+    observed : str
+        What was observed: "tracks" or "end_poses".
+    size : float
+        Probability with which something is said to differ of a robot that is the same everywhere;
+        intervals hold with the rest.
+    version : str
+        Version of umbmark.
+    """
+
+    differs: bool
+    sentence: str
+    remarks: tuple[str, ...]
+    numbers: tuple[NumberOfRobot, ...]
+    asked: tuple[ByCondition, ...]
+    conditions: tuple[AskedCondition, ...]
+    same: tuple[str, ...]
+    runs: int
+    observed: str
+    size: float
+    version: str
+
+
+class NumberOfRobot(Record, frozen=True):
+    """A number of the robot.
+
+    Attributes
+    ----------
+    key : str
+        The number, EFFECT.PARAMETER.
+    meaning : str
+        What it is, in words.
+    value : ValueWithError
+        Its value; that of a number which differs at the mean of the conditions on which it depends.
+    depends_on : tuple[str, ...]
+        The conditions on which it depends, by their first names; none of a number that is one value
+        for all runs.
+    """
+
+    key: str
+    meaning: str
+    value: ValueWithError
+    depends_on: tuple[str, ...]
+
+
+class ValueWithError(Record, frozen=True):
+    """A value with its error.
+
+    Attributes
+    ----------
+    value : float
+        The value, in the unit that the catalogue states.
+    standard_error : float or None
+        Its standard error.
+    interval : Interval or None
+        Its interval.
+    degrees_of_freedom : float
+        Degrees of freedom of Student's t.
+    """
+
+    value: float
+    standard_error: float | None
+    interval: Interval | None
+    degrees_of_freedom: float
+
+
+class ByCondition(Record, frozen=True):
+    """Whether a number depends on a condition, and how.
+
+    Attributes
+    ----------
+    key : str
+        The number, EFFECT.PARAMETER.
+    meaning : str
+        What it is, in words.
+    condition : str
+        The condition, by its first name.
+    differs : bool
+        Whether it depends on the condition by more than chance.
+    p : float
+        p of no difference.
+    p_adjusted : float
+        p adjusted for all numbers and conditions (Holm).
+    levels : tuple[AtLevel, ...]
+        Its values at the levels that show it; none of an amount.
+    sd_between : float or None
+        Standard deviation between levels (restricted maximum likelihood); None of an amount.
+    sd_between_interval : tuple[float or None, float or None] or None
+        Interval of that; its upper end is None where the levels leave it open.
+    largest : LargestDifference or None
+        Of levels, the largest difference; None of an amount.
+    slope : ValueWithError or None
+        Of an amount, the change by one of its units; None of levels.
+    seen : float or None
+        The smallest difference between two levels, or the smallest slope, that 80 % of such tests
+        show.
+    """
+
+    key: str
+    meaning: str
+    condition: str
+    differs: bool
+    p: float
+    p_adjusted: float
+    levels: tuple[AtLevel, ...]
+    sd_between: float | None
+    sd_between_interval: tuple[float | None, float | None] | None
+    largest: LargestDifference | None
+    slope: ValueWithError | None
+    seen: float | None
+
+
+class AtLevel(Record, frozen=True):
+    """The value of a number at a level of a condition.
+
+    Attributes
+    ----------
+    level : str
+        The level.
+    own : ValueWithError
+        The value by the runs of this level, other conditions at their mean.
+    pooled : float
+        The value drawn towards the mean of all levels by what its error leaves open.
+    """
+
+    level: str
+    own: ValueWithError
+    pooled: float
+
+
+class LargestDifference(Record, frozen=True):
+    """The largest difference between two levels.
+
+    Attributes
+    ----------
+    high : str
+        The level with the larger value.
+    low : str
+        The other level.
+    by : ValueWithError
+        By how much it is larger.
+    """
+
+    high: str
+    low: str
+    by: ValueWithError
+
+
+class AskedCondition(Record, frozen=True):
+    """A condition that was asked for.
+
+    Attributes
+    ----------
+    names : tuple[str, ...]
+        Its name, and those of others that divide the runs in the same way.
+    kind : str
+        What it is: "levels", with a value each, or "amount", on which numbers depend by a slope.
+    levels : tuple[LevelOfRuns, ...]
+        Its levels; none of an amount.
+    range : Interval or None
+        Of an amount, its smallest and largest value.
+    runs : int
+        Number of runs of which it is stated.
+    beside : tuple[str, ...]
+        Other conditions whose effect was fitted along.
+    like : tuple[str, ...]
+        Conditions of which its effect cannot be told in these runs.
+    against : str
+        What differences are compared with: those between "runs", or those between "sessions".
+    """
+
+    names: tuple[str, ...]
+    kind: str
+    levels: tuple[LevelOfRuns, ...]
+    range: Interval | None
+    runs: int
+    beside: tuple[str, ...]
+    like: tuple[str, ...]
+    against: str
+
+
+class LevelOfRuns(Record, frozen=True):
+    """A level of a condition.
+
+    Attributes
+    ----------
+    level : str
+        Its word.
+    runs : int
+        Number of runs.
+    """
+
+    level: str
+    runs: int
+
+
 class Diagnosis(Result, frozen=True):
     """What a model is missing, how certain that is, and what this data cannot show.
 
@@ -3236,6 +3452,132 @@ class Published(Record, frozen=True):
     row: str
     e_max_sys_m: float
     sigma_m: float
+
+
+class Survey(Result, frozen=True):
+    """Many robots of one kind.
+
+    Attributes
+    ----------
+    robots : tuple[SurveyedRobot, ...]
+        A row for each robot of which something was found.
+    failed : tuple[FailedRobot, ...]
+        Robots of which nothing was found.
+    among : tuple[AmongRobots, ...]
+        How far they are apart.
+    size : float
+        False-alarm rate: of the verdict on one robot, and of all robots that stand out together;
+        intervals hold with the rest.
+    partial : bool
+        Whether the work was stopped before all robots were asked.
+    draws : int
+        Simulated tests for p-values that have no closed form.
+    seed : int
+        Seed of those.
+    version : str
+        Version of umbmark.
+    """
+
+    robots: tuple[SurveyedRobot, ...]
+    failed: tuple[FailedRobot, ...]
+    among: tuple[AmongRobots, ...]
+    size: float
+    partial: bool
+    draws: int
+    seed: int
+    version: str
+
+
+class SurveyedRobot(Record, frozen=True):
+    """What was found of one robot.
+
+    Attributes
+    ----------
+    robot : str
+        Its name.
+    runs : int
+        Number of runs.
+    fitted : tuple[Estimate, ...]
+        Its numbers: E_d, E_b and, of tracks, E_s, or those of its drive.
+    e_max_sys_m : float or None
+        E_max,sys in m; None where not both directions returned.
+    verdict : str or None
+        Whether these numbers explain the runs, in the words of ``Diagnosis``; None where no robot
+        was diagnosed.
+    missing : tuple[str, ...]
+        The class of effects that is missing.
+    stands_out : tuple[StandsOut, ...]
+        Numbers in which it stands out from the others.
+    """
+
+    robot: str
+    runs: int
+    fitted: tuple[Estimate, ...]
+    e_max_sys_m: float | None
+    verdict: str | None
+    missing: tuple[str, ...]
+    stands_out: tuple[StandsOut, ...]
+
+
+class StandsOut(Record, frozen=True):
+    """A number in which a robot stands out from the others.
+
+    Attributes
+    ----------
+    key : str
+        The number, EFFECT.PARAMETER.
+    p_adjusted : float
+        p adjusted for all robots and numbers (Holm).
+    """
+
+    key: str
+    p_adjusted: float
+
+
+class FailedRobot(Record, frozen=True):
+    """A robot of which nothing was found.
+
+    Attributes
+    ----------
+    robot : str
+        Its name.
+    reason : str
+        Why.
+    """
+
+    robot: str
+    reason: str
+
+
+class AmongRobots(Record, frozen=True):
+    """How far robots are apart in one number.
+
+    Attributes
+    ----------
+    key : str
+        The number, EFFECT.PARAMETER.
+    robots : int
+        Number of robots that show it and do not stand out.
+    mean : float
+        Their mean.
+    interval : Interval or None
+        Its interval.
+    sd_between : float
+        Standard deviation between robots, without the errors of their tests (restricted maximum
+        likelihood).
+    sd_between_interval : tuple[float or None, float or None]
+        Its interval; an end is None where the robots leave it open.
+    standard_error : float
+        Standard error of one robot's number, root mean square.
+    """
+
+    key: str
+    robots: int
+    mean: float
+    interval: Interval | None
+    sd_between: float
+    sd_between_interval: tuple[float | None, float | None]
+    standard_error: float
 
 
 class Sweep(Result, frozen=True):

@@ -1,4 +1,4 @@
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path as PathlibPath
 from typing import Any, Self, SupportsIndex, TypeAlias, Unpack, final, overload
@@ -31,6 +31,7 @@ __all__ = [
     "calibrate_gears",
     "changed",
     "compare",
+    "conditions",
     "diagnose",
     "effects",
     "export",
@@ -53,6 +54,7 @@ __all__ = [
     "separate",
     "simulate",
     "solve",
+    "survey",
     "sweep",
     "tolerance",
     "tracks",
@@ -227,6 +229,11 @@ class Dataset:
     def runs(self) -> tuple[Run, ...]: ...
     @property
     def warnings(self) -> tuple[str, ...]: ...
+    @property
+    def conditions(self) -> dict[str, list[str | float | None]]: ...
+    def with_conditions(
+        self, **conditions: str | float | Iterable[str | float | None] | None
+    ) -> Dataset: ...
     def __len__(self) -> int: ...
     @overload
     def __getitem__(self, key: SupportsIndex | str, /) -> Run: ...
@@ -512,6 +519,22 @@ def changed(
     before: Dataset,
     after: Dataset,
     start: Model | None,
+    options: tuple[float, int, int],
+    return_poses: bool,
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> tuple[str, str]: ...
+def conditions(
+    data: Dataset,
+    start: Model | None,
+    size: float,
+    return_poses: bool,
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> tuple[str, str]: ...
+def survey(
+    robots: Sequence[tuple[str, Dataset]],
+    diagnosis: bool,
     options: tuple[float, int, int],
     return_poses: bool,
     threads: int,

@@ -81,6 +81,9 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
             diagnosis.verdict = Verdict::NotExplained;
         }
     }
+    if !options.experiments {
+        return Ok(diagnosis);
+    }
     diagnosis.next_experiments = next_experiments(ends, &fitted, &asked, &diagnosis.ranking)?;
     Ok(diagnosis)
 }
