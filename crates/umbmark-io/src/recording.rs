@@ -13,9 +13,10 @@ use umbmark_core::run::{headings_of, place};
 
 /// No wheel of a robot rolls faster \[m/s\].
 const FASTEST: f64 = 100.0;
-/// Wheels that roll more slowly \[m/s\], in rows farther apart \[s\], have another unit of time.
+/// Wheels that roll more slowly \[m/s\], in rows farther apart \[s\], of which there are so many or more, have another unit of time.
 const SLOWEST: f64 = 3e-3;
 const LONGEST: f64 = 1.0;
+const FEWEST_ROWS: f64 = 10.0;
 /// Counters that are looked for where a count jumps.
 const USUAL_BITS: [u32; 5] = [8, 12, 16, 24, 32];
 /// A counter that was set back shows no more than so many usual steps, after more than so many.
@@ -388,7 +389,7 @@ fn slow_clock(log: &TickLog, robot: &Robot) -> Option<String> {
         }
     }
     let (speed, period) = (way / seconds, seconds / rows);
-    (speed < SLOWEST && period > LONGEST).then(|| {
+    (rows >= FEWEST_ROWS && speed < SLOWEST && period > LONGEST).then(|| {
         format!(
             "the wheels roll at {:.2} mm/s, by rows that are {period:.0} s apart: if the times are in milliseconds, call their column t_ms",
             1e3 * speed

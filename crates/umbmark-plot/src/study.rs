@@ -205,7 +205,8 @@ impl Study {
                 None => diagnose::first_model(&self.data).map_err(Absent::because)?,
             };
             let watch = Watch { stop: &self.stop, progress: &|_| () };
-            conditions(&self.data, &model, &self.options.diagnose, &watch).map_err(Absent::because)
+            let found = conditions(&self.data, &model, &self.options.diagnose, &watch);
+            found.map_err(|why| Absent(format!("No conditions are compared: {why}.")))
         })
     }
 

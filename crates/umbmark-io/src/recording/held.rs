@@ -71,7 +71,8 @@ fn held_rows(recording: &Recording) -> Vec<bool> {
         let [before, at, next] = [three[0], three[1], three[2]];
         let (seconds, seconds_before) = (time[next] - time[at], time[at] - time[before]);
         let (rate, rate_before) = (step(next) / seconds, step(at) / seconds_before);
-        let alike = rate <= ALIKE * rate_before && rate_before <= ALIKE * rate;
+        // The first reading of a wheel that begins to roll has no rate before it.
+        let alike = seconds_before > LONGEST || rate <= ALIKE * rate_before && rate_before <= ALIKE * rate;
         if step(at).min(step(next)) < LEAST_STEP || seconds > LONGEST || !alike {
             continue;
         }
