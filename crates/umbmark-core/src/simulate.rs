@@ -205,11 +205,12 @@ impl Simulator {
     pub fn new(robot: &Robot, path: &Path, odometry: Odometry, phase: Phase) -> Result<Simulator, SimulateError> {
         let per_tick = robot.metres_per_tick();
         let geometry = TickGeometry::new(per_tick.left, per_tick.right, robot.drive.wheelbase())?;
-        let [cw, ccw] = [Course::new(robot, path, Direction::Cw)?, Course::new(robot, path, Direction::Ccw)?];
-        let convoys = Convoys::new(robot, path);
-        if robot.drive.kind().has_trucks() && convoys.is_none() {
+        // A path to the side is refused as that, by its course.
+        let convoys = if path.slides() { None } else { Convoys::new(robot, path) };
+        if robot.drive.kind().has_trucks() && convoys.is_none() && !path.slides() {
             return Err(SimulateError::Unsupported { drive: robot.drive.kind().name(), what: "paths with arcs" });
         }
+        let [cw, ccw] = [Course::new(robot, path, Direction::Cw)?, Course::new(robot, path, Direction::Ccw)?];
         let rolling = Rolling::new(robot, path, [&cw, &ccw])?;
         let differential = robot.drive.kind().has_axle_wheels();
         let computer = match odometry {

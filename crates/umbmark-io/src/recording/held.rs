@@ -67,9 +67,10 @@ fn held_rows(recording: &Recording) -> Vec<bool> {
     let read: Vec<usize> = (1..rows).filter(|row| step(*row) > 0.0).collect();
     let mut held = vec![false; rows];
     let (mut rolling, mut stretches) = (0, 0);
-    for three in read.windows(3) {
-        let [before, at, next] = [three[0], three[1], three[2]];
-        let (seconds, seconds_before) = (time[next] - time[at], time[at] - time[before]);
+    for (place, pair) in read.windows(2).enumerate() {
+        let [at, next] = [pair[0], pair[1]];
+        let before = place.checked_sub(1).map_or(f64::NEG_INFINITY, |place| time[read[place]]);
+        let (seconds, seconds_before) = (time[next] - time[at], time[at] - before);
         let (rate, rate_before) = (step(next) / seconds, step(at) / seconds_before);
         // The first reading of a wheel that begins to roll has no rate before it.
         let alike = seconds_before > LONGEST || rate <= ALIKE * rate_before && rate_before <= ALIKE * rate;
