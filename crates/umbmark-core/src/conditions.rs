@@ -1,6 +1,6 @@
 //! Which numbers of a robot depend on the conditions of its runs: session, floor, load, temperature.
 //!
-//! Each run says by itself, with its information, where the numbers of the model are ([`of_runs`]). A number differs between the levels of a
+//! Each run says by itself, with its information, where the numbers of the model are (`of_runs`). A number differs between the levels of a
 //! condition if the runs' own values differ by more than runs of one level do among themselves, and depends on an amount if its slope does:
 //!
 //! ```text
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! All numbers may differ at once, so one that does not differ is not accused for one that does. No noise model enters: what a run says is
-//! compared with other runs ([`clusters`]). A condition that is the same in whole sessions, and in several of them, is compared with sessions.
+//! compared with other runs (`clusters`). A condition that is the same in whole sessions, and in several of them, is compared with sessions.
 //! p is adjusted for all numbers and all conditions by Holm.
 //!
 //! Source: Holm (1979), Scandinavian Journal of Statistics 6, 65; the tests' own are named beside them.
