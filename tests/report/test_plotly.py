@@ -29,6 +29,9 @@ def tracks(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Runs enough to say what their errors depend on."""
     folder = tmp_path_factory.mktemp("tracks") / "data"
     umbmark("simulate", "--runs", "4", "--side", "1", "--wheel-noise", "0.001", "-o", folder)
+    runs = [f"{sense}_{number:02}" for number in range(1, 5) for sense in ("cw", "ccw")]
+    floors = [f"{run},{('tile', 'carpet')[number // 2 % 2]}" for number, run in enumerate(runs)]
+    (folder / "conditions.csv").write_text("\n".join(["run,floor", *floors, ""]))
     return folder
 
 
