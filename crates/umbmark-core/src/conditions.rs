@@ -7,7 +7,7 @@
 //! θ_r = level of run r + Σ other conditions,    tested by T² with the runs as clusters
 //! ```
 //!
-//! All numbers may differ at once, so one that does not differ is not accused for one that does. No noise model enters: what a run says is
+//! All numbers may differ at once, so a difference of one is not taken for one of another. No noise model enters: what a run says is
 //! compared with other runs (`clusters`). A condition that is the same in whole sessions, and in several of them, is compared with sessions.
 //! p is adjusted for all numbers and all conditions by Holm.
 //!

@@ -7,11 +7,12 @@
 //! x_i ~ N(μ, τ² + s²)
 //! ```
 //!
-//! with the mean s² of all s_i², each of which is known by few runs, by restricted maximum likelihood: what remains of the spread once the errors of the tests are taken off is the tolerance with which such robots are
-//! made. A robot stands out if |x_i - median| / √(τ₀² + s_i²), with τ₀ from the median absolute deviation, is larger than chance makes in so many robots and
-//! numbers (Student's t, Holm); such robots are left out of μ and τ.
+//! with the mean s² of all s_i², each of which is known by few runs, by restricted maximum likelihood: what remains of the spread once the errors of the tests are
+//! taken off is the tolerance with which such robots are made. Robots that stand out are left out of μ and τ: one by one, the farthest from the
+//! mean of those that are left is compared with the largest of so many normal deviations, and all up to the last that is certain stand out, at most one in
+//! four (generalised extreme studentised deviates).
 //!
-//! Sources: Raudenbush (2009), in The Handbook of Research Synthesis; Holm (1979), Scandinavian Journal of Statistics 6, 65.
+//! Sources: Raudenbush (2009), in The Handbook of Research Synthesis; Rosner (1983), Technometrics 25, 165.
 
 #[cfg(test)]
 mod tests;
@@ -21,15 +22,15 @@ use crate::dataset::Dataset;
 use crate::diagnose::{Options, Verdict, diagnose, first_model};
 use crate::evidence::{Estimate, fit, fit_to_returns};
 use crate::score::score_dataset;
-use crate::stats::{Interval, median, student_t_quantile, t_two_sided};
+use crate::stats::{Interval, student_t_quantile, t_two_sided};
 use crate::watch::Watch;
 use rayon::prelude::*;
 use std::borrow::Borrow;
 use std::fmt::Display;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The median absolute deviation of normal numbers is their standard deviation divided by this.
-const OF_NORMAL: f64 = 1.482_602_218_505_602;
+/// At most one robot in so many stands out.
+const MOST: usize = 4;
 /// Fewer robots do not show how far they are apart.
 pub const FEWEST: usize = 3;
 
@@ -166,37 +167,51 @@ fn showing(rows: &[Row], wanted: Number) -> Vec<(usize, &Estimate)> {
     rows.iter().enumerate().filter_map(of).map(|(place, own)| (place, &rows[place].numbers[own])).collect()
 }
 
-/// Names the robots that stand out.
+/// Names the robots that stand out: the most that are one by one the farthest, and surely farther than chance makes.
 fn stand_out(rows: &mut [Row], size: f64) {
-    let mut asked: Vec<(usize, Number, f64)> = Vec::new();
-    for wanted in numbers(rows) {
-        let shown = showing(rows, wanted);
-        let Some(middle) = median(shown.iter().map(|(_, own)| own.value).collect()).filter(|_| shown.len() >= FEWEST)
-        else {
-            continue;
-        };
-        let off = median(shown.iter().map(|(_, own)| (own.value - middle).abs()).collect()).unwrap_or(0.0) * OF_NORMAL;
-        let error = median(shown.iter().map(|(_, own)| own.standard_error).collect()).unwrap_or(0.0);
-        let between = (off * off - error * error).max(0.0);
-        let robots = (shown.len() - 1) as f64;
-        asked.extend(shown.iter().map(|(place, own)| {
-            let own_variance = own.standard_error * own.standard_error;
-            let all = between + own_variance;
-            // Welch and Satterthwaite: τ₀² is known by the robots, the error by the runs of this one.
-            let freedom = all * all
-                / (between * between / robots + own_variance * own_variance / own.degrees_of_freedom.max(1.0));
-            (*place, wanted, t_two_sided((own.value - middle) / all.sqrt(), freedom.max(1.0)))
-        }));
+    let all = numbers(rows);
+    for wanted in &all {
+        let farthest = farthest(rows, *wanted);
+        let certain = farthest.iter().map(|(place, p)| (*place, (all.len() as f64 * p).min(1.0))).collect::<Vec<_>>();
+        let count = certain.iter().rposition(|(_, p)| *p < size).map_or(0, |last| last + 1);
+        let mut least = 1.0_f64;
+        // One that stands behind a farther one that is certain is as certain.
+        for (place, p) in certain[..count].iter().rev() {
+            least = least.min(*p);
+            rows[*place].stands_out.push((*wanted, least));
+        }
     }
-    asked.sort_by(|a, b| a.2.total_cmp(&b.2));
-    let (count, mut least) = (asked.len(), 0.0_f64);
-    for (rank, (place, number, p)) in asked.into_iter().enumerate() {
-        least = least.max((count - rank) as f64 * p);
-        if least >= size {
+}
+
+/// The robots that are farthest from the mean in a number, each among those that are left, with the p of the largest of so many normal deviations.
+fn farthest(rows: &[Row], wanted: Number) -> Vec<(usize, f64)> {
+    let shown = showing(rows, wanted);
+    // The error of a robot is known by few runs, the variance of a run by those of all robots.
+    let runs = |place: usize| rows[place].runs.max(1) as f64;
+    let of_run = shown.iter().map(|(place, own)| runs(*place) * own.standard_error.powi(2)).sum::<f64>();
+    let error = |place: usize| (of_run / shown.len() as f64 / runs(place)).sqrt();
+    let mut left: Vec<(usize, f64, f64)> =
+        shown.iter().map(|(place, own)| (*place, own.value, error(*place))).collect();
+    let mut found = Vec::new();
+    for _ in 0..(shown.len() / MOST).max(1) {
+        let robots = left.len() as f64;
+        let values: Vec<f64> = left.iter().map(|(_, value, _)| *value).collect();
+        let errors: Vec<f64> = left.iter().map(|(.., error)| *error).collect();
+        let Some(spread) = between(&values, &errors, 0.95).filter(|_| left.len() >= FEWEST) else { break };
+        let off = |(_, value, error): &(usize, f64, f64)| (value - spread.mean) / spread.deviation.hypot(*error);
+        let deviation = (left.iter().map(|one| off(one).powi(2)).sum::<f64>() / (robots - 1.0)).sqrt();
+        let Some(place) = (0..left.len()).max_by(|a, b| off(&left[*a]).abs().total_cmp(&off(&left[*b]).abs())) else {
+            break;
+        };
+        let largest = off(&left[place]).abs() / deviation;
+        if !largest.is_finite() {
             break;
         }
-        rows[place].stands_out.push((number, least));
+        let rest = ((robots - 1.0).powi(2) - robots * largest * largest).max(0.0);
+        let t = largest * (robots * (robots - 2.0) / rest).sqrt();
+        found.push((left.remove(place).0, (robots * t_two_sided(t, robots - 2.0)).min(1.0)));
     }
+    found
 }
 
 fn among(rows: &[Row], wanted: Number, level: f64) -> Option<Among> {

@@ -9,6 +9,7 @@ mod dataset_reading;
 mod dataset_real;
 mod dataset_writing;
 mod edges;
+mod joined_tables;
 mod mcap_bad_input;
 mod mcap_log;
 mod mcap_reading;

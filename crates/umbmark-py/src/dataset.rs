@@ -5,23 +5,23 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2, ndarray::Array2};
-use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyIterator, PyList, PySlice, PyString, PyTuple};
+use pyo3::types::{PyBytes, PyDict, PyIterator, PySlice, PyTuple};
 use serde::{Deserialize, Serialize};
 use umbmark_cli::told;
-use umbmark_core::dataset::{self as core, RunClock, RunConditions, RunTopics, Stated};
+use umbmark_core::dataset::{self as core, RunClock, RunConditions, RunTopics};
 use umbmark_core::result;
-use umbmark_io::export::{ExportError, UrdfFile};
-use umbmark_io::{KnownNumbers, Layout, Proposal, Recorded, Topics, assemble, read_controller, write_template};
+use umbmark_io::{Layout, Recorded, Topics, assemble};
 
 use crate::arguments::poses;
 use crate::path::{DIRECTIONS, Path};
 use crate::robot::Robot;
 use crate::run::{self, Run, TESTS};
 use crate::score::{ARRAYS, all_finite};
+use crate::stated;
 use crate::work::{detached, watched};
-use crate::{WORDS, choice, existing, hash_of, json, refused, refused_data};
+use crate::{choice, existing, hash_of, json, refused, refused_data};
 
 /// A robot and its runs, measured or simulated. Frozen; ``umbmark.load_dataset`` reads one.
 ///
@@ -288,19 +288,7 @@ impl Dataset {
     /// What is stated of the conditions of its runs: each condition with its value of every run, a word or a number; None where it is not known.
     #[getter]
     fn conditions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let columns = PyDict::new(py);
-        for (name, _) in self.0.conditions.iter().flat_map(|stated| &stated.stated) {
-            let of_run = |run: &core::Run| {
-                let stated = self.0.conditions.iter().find(|stated| stated.run == run.name)?;
-                let (_, value) = stated.stated.iter().find(|(own, _)| own == name)?;
-                Some(match value {
-                    Stated::Word(word) => Given::Word(word.clone()),
-                    Stated::Number(number) => Given::Number(*number),
-                })
-            };
-            columns.set_item(name, PyList::new(py, self.0.runs.iter().map(of_run))?)?;
-        }
-        Ok(columns)
+        stated::told(py, &self.0)
     }
 
     /// Give the same dataset with the conditions of its runs; what was stated before is kept unless it is given anew.
@@ -328,26 +316,7 @@ impl Dataset {
     /// {'floor': ['tile', 'tile', 'carpet'], 'load_kg': [2.0, 2.0, 2.0]}
     #[pyo3(signature = (**conditions))]
     fn with_conditions(&self, conditions: Option<&Bound<'_, PyDict>>) -> PyResult<Dataset> {
-        let mut data = (*self.0).clone();
-        let find = |data: &core::Dataset, run: &str| {
-            let stated = data.conditions.iter().find(|stated| stated.run == run);
-            stated.map_or_else(Vec::new, |stated| stated.stated.clone())
-        };
-        let mut stated: Vec<RunConditions> = data
-            .runs
-            .iter()
-            .map(|run| RunConditions { run: run.name.clone(), stated: find(&data, &run.name) })
-            .collect();
-        for (name, values) in conditions.into_iter().flatten() {
-            let name: String = name.extract()?;
-            for (run, value) in stated.iter_mut().zip(given(&name, &values, data.runs.len())?) {
-                run.stated.retain(|(own, _)| *own != name);
-                run.stated.extend(value.map(|value| (name.clone(), value)));
-            }
-        }
-        stated.retain(|run| !run.stated.is_empty());
-        data.conditions = stated;
-        Ok(Dataset::from(data))
+        stated::with_conditions(&self.0, conditions).map(Dataset::from)
     }
 
     /// Give the known return errors of a direction.
@@ -476,45 +445,6 @@ fn poses_of_files() -> Vec<String> {
     ["x_ref_m", "y_ref_m", "theta_ref_rad"].map(str::to_owned).into()
 }
 
-/// A condition as Python has it.
-#[derive(IntoPyObject)]
-enum Given {
-    Word(String),
-    Number(f64),
-}
-
-/// The values of a condition, one a run.
-fn given(name: &str, values: &Bound<'_, PyAny>, runs: usize) -> PyResult<Vec<Option<Stated>>> {
-    if values.is_instance_of::<PyString>() || values.is_none() || !values.hasattr("__iter__")? {
-        return Ok(vec![one(name, values)?; runs]);
-    }
-    let all = values.try_iter()?.map(|value| one(name, &value?)).collect::<PyResult<Vec<_>>>()?;
-    if all.len() != runs {
-        return Err(PyValueError::new_err(format!(
-            "{name} must have one value for each of {runs} runs, got {}",
-            all.len()
-        )));
-    }
-    Ok(all)
-}
-
-fn one(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Stated>> {
-    if value.is_none() {
-        return Ok(None);
-    }
-    if let Ok(word) = value.extract::<String>() {
-        return Ok((!word.is_empty()).then_some(Stated::Word(word)));
-    }
-    let number: f64 = value
-        .extract()
-        .map_err(|_| PyTypeError::new_err(format!("{name} must be words or numbers, got {}", value.get_type())))?;
-    match number {
-        _ if number.is_nan() => Ok(None),
-        _ if number.is_finite() => Ok(Some(Stated::Number(number))),
-        _ => Err(PyValueError::new_err(format!("{name} must be finite, got {number}"))),
-    }
-}
-
 /// Refuses runs that have the same number or name.
 fn all_differ(runs: &[core::Run]) -> PyResult<()> {
     let (mut names, mut numbers) = (HashMap::new(), HashMap::new());
@@ -615,63 +545,4 @@ pub fn inspect(py: Python<'_>, data: &Dataset, place: &str) -> PyResult<(String,
     let found = watched(py, 1, None, move |_| shared.inspect())?;
     let text = told::inspection(&data.0, &found);
     Ok((json(&result::Inspection::new(place, &data.0, &found, &[]))?, text))
-}
-
-/// Write a robot.toml and a returns.csv to fill in, or propose a robot.toml from logs.
-///
-/// Parameters
-/// ----------
-/// folder : path-like, default "."
-///     Where to write; it is made where it is not there.
-/// logs : path-like, optional
-///     A log in CSV or MCAP, a bag of ROS 1 or 2, or a folder of these. A robot.toml is proposed from them, and they are put into
-///     ``runs``. What they do not show is left to fill in, in lines marked FILL IN.
-/// urdf : path-like, optional
-///     Take wheelbase and wheel diameters from this URDF; with ``logs``.
-/// controller_yaml : path-like, optional
-///     Take them from the parameters of this ROS 2 controller; with ``logs``.
-/// ticks, reference : str, optional
-///     Topics of MCAP files and bags, as of ``load_dataset``.
-/// replace : bool, default False
-///     Whether files that exist are replaced.
-///
-/// Returns
-/// -------
-/// tuple of pathlib.Path
-///     The files that were written: two to fill in, or the proposed robot.toml.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If files are there already, if nothing can be written, or if no log shows how the wheels turned.
-#[pyfunction]
-#[pyo3(signature = (
-    folder=PathBuf::from("."), *, logs=None, urdf=None, controller_yaml=None, ticks=None, reference=None, replace=false
-))]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
-pub fn init<'py>(
-    py: Python<'py>,
-    folder: PathBuf,
-    logs: Option<PathBuf>,
-    urdf: Option<PathBuf>,
-    controller_yaml: Option<PathBuf>,
-    ticks: Option<String>,
-    reference: Option<String>,
-    replace: bool,
-) -> PyResult<Bound<'py, PyTuple>> {
-    let Some(logs) = logs else {
-        if urdf.is_some() || controller_yaml.is_some() || ticks.is_some() || reference.is_some() {
-            return Err(PyValueError::new_err("urdf, controller_yaml, ticks and reference need logs"));
-        }
-        return PyTuple::new(py, write_template(&folder, existing(replace)).map_err(refused_data)?);
-    };
-    let mut known: Vec<KnownNumbers> = Vec::new();
-    known.extend(controller_yaml.map(read_controller).transpose().map_err(refused_data)?);
-    if let Some(urdf) = urdf {
-        let in_words = |error: ExportError| PyValueError::new_err(error.worded(&WORDS));
-        known.push(UrdfFile::read(urdf, None).and_then(|urdf| urdf.numbers()).map_err(in_words)?);
-    }
-    let topics = Topics { ticks, reference };
-    let proposal = Proposal::of(&logs, &folder, &topics, &known, &WORDS).map_err(refused_data)?;
-    PyTuple::new(py, [proposal.write(&folder, existing(replace)).map_err(refused_data)?])
 }

@@ -40,12 +40,13 @@ module! {
     arguments;
     calibrate: calibrate, calibrate_gears;
     checkpoint: merge;
-    dataset: Dataset, init, inspect, load_dataset;
+    dataset: Dataset, inspect, load_dataset;
     diagnose: changed, compare, conditions, diagnose, fit, learn, solve, survey;
     effect: effects, formula_variables;
     exception;
     export: export;
     figure: Figure, figure, kinds;
+    init: init;
     keys;
     model: Model;
     monte_carlo: Ensemble, Study;
@@ -60,6 +61,7 @@ module! {
     score: score_arrays, score_dataset;
     sensitivity: Sobol, sensitivity;
     simulate: simulate;
+    stated;
     sweep: sweep;
     tolerance: tolerance;
     tracks: tracks;

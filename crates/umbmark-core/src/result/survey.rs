@@ -13,7 +13,7 @@ use crate::survey;
 pub struct StandsOut {
     /// The number, EFFECT.PARAMETER.
     pub key: String,
-    /// p adjusted for all robots and numbers (Holm).
+    /// p adjusted for all robots and numbers.
     pub p_adjusted: f64,
 }
 

@@ -3527,7 +3527,7 @@ class StandsOut(Record, frozen=True):
     key : str
         The number, EFFECT.PARAMETER.
     p_adjusted : float
-        p adjusted for all robots and numbers (Holm).
+        p adjusted for all robots and numbers.
     """
 
     key: str
