@@ -135,6 +135,7 @@ def truth(made: Made) -> dict[str, Any]:
     names = {log.run: log.name for log in reversed(made.logs)}
     delay = float(np.mean(made.delays_s))
     late = robot.motor_lag_s if setting.faults.counts_commands else 0.0
+    late += setting.reference.filter_s
     late += float(np.mean([log.late_s for log in made.logs]))
     return {
         "world": made.world,

@@ -64,14 +64,20 @@ def ratios(learn: Json, truth: Json) -> Json:
 def delay(learn: Json, truth: Json) -> Json | None:
     """The delay against the truth, where there is one or one was added.
 
-    Wheels that follow late make a delay too: that of slow motion.
+    Wheels that follow late, and filters, make a delay too: that of slow motion.
     """
     said = fitted(learn, "reference_delay", "delay_s")
     true = truth["apparent_delay_s"]
-    lag = [fitted(learn, "wheel_lag", name) for name in ("share", "time_constant_s")]
-    if lag[0] and lag[1] and truth["numbers"]["faults"]["counts_commands"]:
-        late = lag[0][0] * lag[1][0] + (said[0] if said else 0.0)
-        return {"said": late, "true": true, "within": abs(late - true) <= DELAY_S}
+    numbers = truth["numbers"]
+    follows_late = {
+        "wheel_lag": numbers["faults"]["counts_commands"],
+        "reference_filter": numbers["reference"]["filter_s"],
+    }
+    for effect, is_there in follows_late.items():
+        lag = [fitted(learn, effect, name) for name in ("share", "time_constant_s")]
+        if lag[0] and lag[1] and is_there:
+            late = lag[0][0] * lag[1][0] + (said[0] if said else 0.0)
+            return {"said": late, "true": true, "within": abs(late - true) <= DELAY_S}
     if said is None:
         return {"said": None, "true": true, "within": False} if abs(true) >= 0.01 else None
     off = off_by(said, true)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from laws import Situation, added_turn, scrubbed, unlisted_motion, wheel_travel
 from setting import Array, Drive, Faults, Laws, Recording, Reference, Robot, Setting
-from tracker import tracked, turned
+from tracker import filtered, tracked, turned
 
 FIRST_S = 2.0
 """A replay is laid on the poses of so many first seconds, and on five poses at least."""
@@ -168,8 +168,12 @@ def along(motion: Array, start: Array) -> Array:
 
 def shown(stamp_s: Array, body: Array, when_s: Array, setting: Setting) -> Array:
     """Poses of the tracked point [poses x 3] at other times than those of the rows."""
-    moved = [np.interp(when_s, stamp_s, column) for column in body.T]
-    return tracked(np.stack(moved, axis=1), setting.reference)
+
+    def seen(when_s: Array) -> Array:
+        moved = [np.interp(when_s, stamp_s, column) for column in body.T]
+        return tracked(np.stack(moved, axis=1), setting.reference)
+
+    return filtered(seen, when_s, setting.reference.filter_s)
 
 
 def mean_angle(angles: Array) -> float:

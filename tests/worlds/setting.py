@@ -126,6 +126,8 @@ class Reference:
     """Positive: the measured pose is older than its stamp; it shows where the robot was."""
     delay_scatter_s: float = 0.0
     """Standard deviation of the delay from run to run."""
+    filter_s: float = 0.0
+    """Time constant of a first-order low-pass filter of the poses."""
     clock_rate: float = 0.0
     """The delay grows by this many seconds each second of the run."""
     lever_forward_m: float = 0.0

@@ -1,5 +1,6 @@
 """The absolute poses: what the reference sees, when, how well, and what is wrong with it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import pi, sqrt
 
@@ -52,6 +53,15 @@ def tracked(body: Array, reference: Reference) -> Array:
     lever = np.array([[reference.lever_forward_m, reference.lever_left_m]])
     place = body[:, :2] + turned(np.repeat(lever, len(body), axis=0), body[:, 2])
     return np.column_stack([place, body[:, 2] + reference.yaw_rad])
+
+
+def filtered(shown: Callable[[Array], Array], when_s: Array, filter_s: float) -> Array:
+    """Poses [n x 3] at times, after a first-order low-pass filter: the mean of those before."""
+    if not filter_s:
+        return shown(when_s)
+    ages = (np.arange(200) + 0.5) * 0.05
+    weights = np.exp(-ages) / np.exp(-ages).sum()
+    return sum(w * shown(when_s - age * filter_s) for w, age in zip(weights, ages, strict=True))
 
 
 def with_frame_moved(pose: Array, taken_s: Array, jump: Jump, pivot: Array) -> Array:
@@ -212,7 +222,7 @@ def perfect(setting: Setting, ride: Ride, shown_s: Array, jumps: list[Jump]) -> 
     if setting.faults.jump_of != "reference":
         jumps = []
     when = np.concatenate([shown_s, [jump.time_s for jump in jumps]])
-    pose = tracked(ride.poses(when), reference)
+    pose = filtered(lambda t: tracked(ride.poses(t), reference), when, reference.filter_s)
     for i, jump in enumerate(jumps, start=len(shown_s)):
         pose = with_frame_moved(pose, when, jump, pose[i])
     pose = pose[: len(shown_s)]

@@ -29,6 +29,7 @@ ALWAYS = {"wheel_diameter_ratio", "wheelbase", "scale"}
 """Steps of every model."""
 NUISANCES: dict[str, set[str]] = {
     "delay_s": {"reference_delay"},
+    "filter_s": {"reference_filter", "reference_delay"},
     "clock_rate": {"reference_clock_rate", "reference_delay"},
     "lever_forward_m": {"marker_offset"},
     "yaw_rad": {"marker_yaw", "crab"},

@@ -40,6 +40,11 @@ def delay(_: Setting, random: Random) -> Changes:
     return {"delay_s": signed(random, size), "delay_scatter_s": random.uniform(0, 5e-3)}
 
 
+def low_pass(_: Setting, random: Random) -> Changes:
+    """Poses that a first-order filter has smoothed."""
+    return {"filter_s": log_uniform(random, 0.08, 0.4)}
+
+
 def rate(_: Setting, random: Random) -> Changes:
     """The clock of the reference runs fast or slow."""
     return {"clock_rate": signed(random, log_uniform(random, 50e-6, 3000e-6))}
@@ -278,6 +283,7 @@ WORLDS = {
         World("null", "E_d, E_b and E_s alone are off", always()),
         World("perfect", "nothing is off", always(**PERFECT)),
         World("delay", "constant delay of the reference, 10 to 300 ms either way", delay),
+        World("low_pass", "poses behind a low-pass filter of 0.08 to 0.4 s", low_pass),
         World("rate", "clock of the reference 50 to 3000 ppm off", rate),
         World("lever", "tracked point 5 to 150 mm from the axle's centre", lever),
         World("yaw", "tracked heading turned by 0.5 to 180 degrees", yaw),

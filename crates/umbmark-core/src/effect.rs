@@ -36,13 +36,15 @@ use crate::register;
 pub use bumps::extra_travel;
 pub use chain::Chain;
 pub use changes::Changes;
-pub use context::{Aside, Context, Progress, RunContext, Sight};
+pub use context::{Aside, Context, Filter, Progress, RunContext, Sight};
 pub(crate) use conversion::differences;
 pub use conversion::{CONVERTED, Conversion};
 pub use entry::{Entry, Evaluate, MeanLaws, RandomLaws};
 pub use formula::{Formula, FormulaError, FormulaVariable, Target};
 pub use law::Law;
-pub use laws::{BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw};
+pub use laws::{
+    BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, FilterLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw,
+};
 pub use model::{Model, ModelError, Part};
 pub use number::{Derived, MAX_SHAPES, Number, Shapes};
 pub use text::{effects_text, effects_text_with};
@@ -117,6 +119,7 @@ register! {
     // START, and the measurement.
     start_pose,
     reference_delay,
+    reference_filter,
     reference_clock_rate,
     marker_offset,
     marker_yaw,

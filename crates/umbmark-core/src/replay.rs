@@ -10,6 +10,7 @@
 //! [`Dual`](crate::geometry::Dual) it gives poses and columns of their Jacobian, [`LANES`](crate::geometry::LANES) at once. Each
 //! sample is an exact arc.
 
+mod behind;
 mod error;
 mod formulas;
 mod making;

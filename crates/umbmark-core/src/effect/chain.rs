@@ -1,6 +1,6 @@
 //! The effects of a model, applied: from believed to true motion, and to its measurement.
 
-use super::{Changes, Context, Evaluate, Formula, MAX_PARAMETERS, MeanLaws, Sight};
+use super::{Changes, Context, Evaluate, Filter, Formula, MAX_PARAMETERS, MeanLaws, Sight};
 use crate::drive::{DifferentialDrive, LinkReading, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use std::sync::Arc;
@@ -142,6 +142,17 @@ impl<T: Evaluate> Chain<T> {
     #[inline]
     pub fn has_clock(&self) -> bool {
         self.acting(Changes::CLOCK).next().is_some()
+    }
+
+    /// The filter that measurements go through.
+    #[inline]
+    pub fn filter(&self) -> Option<Filter<T>> {
+        self.acting(Changes::FILTER).find_map(|acting| {
+            let ActingLaws::Entry(laws) = &acting.laws else { return None };
+            let mut filter = Filter { share: T::from(0.0), time_constant: T::from(1.0) };
+            (laws.filter)(&acting.values, &mut filter);
+            Some(filter)
+        })
     }
 
     /// Age \[s\] of a measurement whose time stamp is `time` after the run began.

@@ -25,10 +25,14 @@ impl Changes {
     pub const LINK: Changes = Changes(1 << 8);
     /// [`ClockLaw::late`](super::ClockLaw::late).
     pub const CLOCK: Changes = Changes(1 << 9);
+    /// [`FilterLaw::filter`](super::FilterLaw::filter).
+    pub const FILTER: Changes = Changes(1 << 10);
+    /// What relates measurements to other moments than that of their time stamp.
+    pub const MOMENT: Changes = Changes::CLOCK.and(Changes::FILTER);
     /// Changes of the mean pose of a robot.
     pub const MOTION: Changes = Changes::WHEELS.and(Changes::BODY).and(Changes::START).and(Changes::LINK);
     /// Changes of the mean of observations.
-    pub const MEAN: Changes = Changes::MOTION.and(Changes::SEEN).and(Changes::CLOCK);
+    pub const MEAN: Changes = Changes::MOTION.and(Changes::SEEN).and(Changes::MOMENT);
     /// Nothing.
     pub const NOTHING: Changes = Changes(0);
 

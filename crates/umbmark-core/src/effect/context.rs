@@ -34,6 +34,20 @@ impl RunContext {
     }
 }
 
+/// The low-pass filter that absolute measurements go through: the share of them that does, and its time constant \[s\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filter<T = f64> {
+    /// 0 without a filter, 1 where the whole measurement is filtered.
+    pub share: T,
+    /// Time after which all but 1/e of a step is followed.
+    pub time_constant: T,
+}
+
+impl Filter {
+    /// No filter.
+    pub const NONE: Filter = Filter { share: 0.0, time_constant: 1.0 };
+}
+
 /// The moment of an absolute measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sight {

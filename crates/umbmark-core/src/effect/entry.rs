@@ -1,8 +1,11 @@
 //! An effect as data.
 
-use super::laws::{BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw};
+use super::laws::{
+    BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, FilterLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw,
+};
 use super::{
-    About, Bump, CATALOGUE, Changes, Context, Effect, MAX_PARAMETERS, Shown, Sight, Stretch, Tried, WheelVariance,
+    About, Bump, CATALOGUE, Changes, Context, Effect, Filter, MAX_PARAMETERS, Shown, Sight, Stretch, Tried,
+    WheelVariance,
 };
 use crate::drive::{DriveKind, DriveKinds, LinkReading, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Instructions, Pose2, Real};
@@ -21,6 +24,8 @@ pub struct MeanLaws<T: Real> {
     pub link: fn(&[T], &mut LinkReading<T>),
     /// See [`ClockLaw::late`].
     pub late: fn(&[T], f64, &mut T),
+    /// See [`FilterLaw::filter`].
+    pub filter: fn(&[T], &mut Filter<T>),
     /// See [`SightLaw::seen`].
     pub seen: fn(&[T], &Sight, &mut Pose2<T>),
 }
@@ -34,6 +39,7 @@ impl<T: Real> MeanLaws<T> {
             body: |_, _, _| (),
             link: |_, _| (),
             late: |_, _, _| (),
+            filter: |_, _| (),
             seen: |_, _, _| (),
         }
     }
@@ -187,6 +193,8 @@ impl Entry {
         link: LinkLaw changes LINK,
         /// Lists its law of the clock.
         late: ClockLaw changes CLOCK,
+        /// Lists its law of the filter of what is measured.
+        filter: FilterLaw changes FILTER,
         /// Lists its law of what is measured.
         seen: SightLaw changes SEEN,
     }

@@ -3,7 +3,7 @@
 //!
 //! An effect has the laws that its [`Entry`](super::Entry) lists; other laws are not called.
 
-use super::{Bump, Effect, Sight, Stretch, WheelVariance};
+use super::{Bump, Effect, Filter, Sight, Stretch, WheelVariance};
 use crate::drive::{LinkReading, WheelTravel};
 use crate::geometry::{Pose2, Real};
 use crate::random::Stream;
@@ -20,6 +20,12 @@ pub trait LinkLaw: Effect {
 pub trait ClockLaw: Effect {
     /// Adds the age \[s\] of a measurement whose time stamp is `time` after the run began.
     fn late<T: Real>(p: &[T], time: f64, late: &mut T);
+}
+
+/// A law of a filter of absolute measurements.
+pub trait FilterLaw: Effect {
+    /// Sets the filter that poses go through.
+    fn filter<T: Real>(p: &[T], filter: &mut Filter<T>);
 }
 
 /// A law of the deterministic error of a measurement.

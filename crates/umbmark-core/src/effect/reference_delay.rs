@@ -29,7 +29,7 @@ impl Effect for ReferenceDelay {
                   ms are 10 mm.",
         signature: "The measured pose is late by v τ along the course and by ω τ in turns. At rest it is correct, so return poses do \
                     not show it.",
-        confused_with: &["acceleration_slip", "reference_clock_rate", "wheel_lag"],
+        confused_with: &["acceleration_slip", "reference_filter", "reference_clock_rate", "wheel_lag"],
         separated_by: "a dense track; determine the delay before you judge any physical effect",
         source: "delays that makers and users of motion capture state",
     };

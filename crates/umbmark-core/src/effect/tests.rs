@@ -471,7 +471,7 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
     let travel = WheelTravel { left: 0.3, right: 0.5 };
     let motion = Displacement2 { forward: 0.4, sideways: 0.1, rotation: 0.2 };
     let pose = Pose2::new(1.0, 2.0, 0.5);
-    let MeanLaws { start, wheels, body, link, late, seen } = entry.values;
+    let MeanLaws { start, wheels, body, link, late, filter, seen } = entry.values;
     let RandomLaws { diffusion, bumps, start_scatter, measured } = entry.scatter;
     let mut stream = Stream::new(1, 2, 3);
     let (mut rolled, mut moved, mut shown, mut found) = ([travel; 2], [motion; 2], pose, pose);
@@ -483,6 +483,8 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
     seen(values, &sight, &mut shown);
     let mut behind = 0.0;
     late(values, 30.0, &mut behind);
+    let mut filtered = Filter::NONE;
+    filter(values, &mut filtered);
     let reading = LinkReading { length: 1.0, angles: [0.1, -0.2] };
     let mut read = reading;
     link(values, &mut read);
@@ -496,6 +498,7 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
         (Changes::BODY, moved != [motion; 2]),
         (Changes::SEEN, shown != pose),
         (Changes::CLOCK, behind != 0.0),
+        (Changes::FILTER, filtered != Filter::NONE),
         (Changes::LINK, read != reading),
         (Changes::MEASURED, found != pose),
         (Changes::BUMPS, !met.is_empty()),

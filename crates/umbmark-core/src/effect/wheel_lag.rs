@@ -40,7 +40,7 @@ impl Effect for WheelLag {
                   filter of the counted speed does the same.",
         signature: "The robot is behind by v τ while it drives and catches up when it stands still. Where it turns while it drives, it \
                     leaves the counted path, and does not come back to it. Return poses of a drive with stops hardly show it.",
-        confused_with: &["reference_delay"],
+        confused_with: &["reference_delay", "reference_filter"],
         separated_by: "quick changes of speed: a delay moves all of the motion, a lag rounds its corners; counts of encoders",
         source: "first-order response of a speed control loop; 0.15 s is assumed",
     };

@@ -1,5 +1,6 @@
 //! The poses that a model predicts along a track.
 
+use super::behind::Behind;
 use super::moment::Moments;
 use super::track::Track;
 use crate::effect::{Chain, Evaluate, Sight};
@@ -29,7 +30,7 @@ impl Track {
         if let Some(convoy) = &self.convoy {
             return self.replay_trucks(convoy, chain, &Pose2::IDENTITY.lift(), seen);
         }
-        if chain.has_clock() {
+        if chain.has_clock() || chain.filter().is_some() {
             return self.replay_late(chain, self.start(chain), |observation, pose, sight| {
                 seen(observation, &chain.seen(sight, pose));
             });
@@ -43,7 +44,7 @@ impl Track {
         }
     }
 
-    /// The same by a reference that is late: calls `seen` with the true pose at the moment that each measurement shows.
+    /// The same by a reference that is late or filtered: calls `seen` with the true pose at the moment that each measurement shows.
     fn replay_late<T: Evaluate>(
         &self,
         chain: &Chain<T>,
@@ -51,11 +52,15 @@ impl Track {
         mut seen: impl FnMut(usize, &Pose2<T>, &Sight),
     ) {
         let (mut pose, mut made, mut moments) = (from, 0, Moments::new(self));
+        let mut behind = chain.filter().map(Behind::new);
         for (observation, sight) in self.sights.iter().enumerate() {
             let moment = moments.next(sight, chain.late(sight.time).value());
             // Beyond the end of a log, its last piece continues.
             let whole = moment.made.max(made);
-            pose = self.drive(chain, pose, made..whole);
+            pose = match &mut behind {
+                Some(behind) => self.drive_before(chain, pose, made..whole, behind),
+                None => self.drive(chain, pose, made..whole),
+            };
             made = whole;
             let mut there = pose;
             if moment.share != 0.0 {
@@ -67,6 +72,14 @@ impl Track {
                     sideways: motion.sideways * share,
                     rotation: motion.rotation * share,
                 });
+            }
+            if let Some(mut behind) = behind {
+                let time = moment.sight.time - moment.sight.late;
+                if moment.share != 0.0 {
+                    behind.goes(&self.contexts[moment.made], (&pose, &there), time);
+                }
+                behind.rest(time);
+                there = behind.seen(&there);
             }
             seen(observation, &there, &moment.sight);
         }
@@ -80,7 +93,7 @@ impl Track {
             self.replay_trucks(convoy, chain, &room, |_, pose| poses.push(*pose));
             return poses;
         }
-        if chain.has_clock() {
+        if chain.has_clock() || chain.filter().is_some() {
             self.replay_late(chain, room.compose(&chain.start()), |_, pose, sight| {
                 poses.push(room.inverse().compose(&chain.seen(sight, pose)));
             });
@@ -120,6 +133,23 @@ impl Track {
             };
             seen(observation, &pose);
         }
+    }
+
+    /// The same as [`Track::drive`], before a filtered measurement.
+    fn drive_before<T: Evaluate>(
+        &self,
+        chain: &Chain<T>,
+        from: Pose2<T>,
+        pieces: std::ops::Range<usize>,
+        behind: &mut Behind<T>,
+    ) -> Pose2<T> {
+        let mut pose = from;
+        for piece in pieces {
+            let (to, at) = (self.drive(chain, pose, piece..piece + 1), &self.contexts[piece]);
+            behind.goes(at, (&pose, &to), at.time + at.duration);
+            pose = to;
+        }
+        pose
     }
 
     #[inline]

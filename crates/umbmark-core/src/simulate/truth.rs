@@ -7,14 +7,18 @@ use super::rolls::{Roll, Rolls};
 use super::way::Way;
 use crate::drive::{Drive, LinkReading, WheelTravel};
 use crate::effect::{
-    Aside, Bump, Chain, Changes, Context, Law, Model, RandomLaws, Sight, Stretch, WheelVariance, across, course,
-    course_angle,
+    Aside, Bump, Chain, Changes, Context, Filter, Law, Model, RandomLaws, Sight, Stretch, WheelVariance, across,
+    course, course_angle,
 };
 use crate::engine::Instructions;
 use crate::geometry::{Displacement2, Pose2, Real};
 use crate::path::Direction;
 use crate::random::Stream;
 
+/// A filter is followed for so many of its time constants: 6e-6 of it is before.
+const FILTERED: f64 = 12.0;
+/// Steps of that time.
+const STEPS: u32 = 600;
 /// Purpose of the stream that wheel noise is drawn from; no hash of a name is this small.
 const WHEEL_NOISE: u64 = 2;
 
@@ -440,7 +444,8 @@ impl Truth {
     /// Absolute measurements of the true poses, each given by the time since the run began \[s\].
     pub fn measure(&mut self, at: &Sight, shown: impl Fn(f64) -> Pose2) -> Pose2 {
         let late = self.chain.late(at.time);
-        measured(&self.chain, &mut self.random, &Sight { late, ..*at }, &shown(at.time - late))
+        let pose = filtered(self.chain.filter(), &shown, at.time - late);
+        measured(&self.chain, &mut self.random, &Sight { late, ..*at }, &pose)
     }
 
     /// The ends of all runs as absolute measurements at this moment of each show them, in the order in which they were begun.
@@ -449,6 +454,24 @@ impl Truth {
         let Truth { pieces, random, chain, .. } = self;
         pieces.reached().map(move |pose| measured(chain, random, &at, &pose))
     }
+}
+
+/// The true pose at a time as it leaves a filter: the mean of all poses before, by the midpoints of steps.
+fn filtered(filter: Option<Filter>, shown: impl Fn(f64) -> Pose2, time: f64) -> Pose2 {
+    let now = shown(time);
+    let Some(Filter { share, time_constant }) = filter.filter(|filter| filter.share != 0.0) else { return now };
+    let step = FILTERED / f64::from(STEPS);
+    let (mut lag, mut weights) = ([0.0; 3], 0.0);
+    for k in 0..STEPS {
+        let age = (f64::from(k) + 0.5) * step;
+        let (weight, then) = (libm::exp(-age), shown(time - age * time_constant));
+        weights += weight;
+        for (lag, way) in lag.iter_mut().zip([now.x - then.x, now.y - then.y, now.heading - then.heading]) {
+            *lag += weight * way;
+        }
+    }
+    let [x, y, heading] = lag.map(|lag| share * lag / weights);
+    Pose2 { x: now.x - x, y: now.y - y, heading: now.heading - heading }
 }
 
 /// A true pose as an absolute measurement at this moment shows it.

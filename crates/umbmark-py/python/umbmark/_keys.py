@@ -88,6 +88,7 @@ EffectName: TypeAlias = Literal[
     "wheel_noise",
     "start_pose",
     "reference_delay",
+    "reference_filter",
     "reference_clock_rate",
     "marker_offset",
     "marker_yaw",

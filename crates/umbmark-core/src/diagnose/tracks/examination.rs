@@ -52,7 +52,7 @@ impl Examination {
         let known = |effect: &Law| self.fitted.model.parts().iter().any(|part| part.effect == *effect);
         let mut effects = fitted.model.parts().iter().map(|part| &part.effect);
         let sees_alike =
-            effects.all(|effect| known(effect) || !effect.changes().include(Changes::SEEN.and(Changes::CLOCK)));
+            effects.all(|effect| known(effect) || !effect.changes().include(Changes::SEEN.and(Changes::MOMENT)));
         let hold = sees_alike && responses::hold(&self.along, &fitted.observed);
         let responses = if hold { self.lacked_by(&fitted)? } else { Responses::new(&fitted)? };
         Ok(Examination::by(fitted, responses))

@@ -51,6 +51,9 @@ impl ObservedRun {
 
     /// Calls `seen` with what is measured of each place.
     pub(super) fn sighted<T: Evaluate>(&self, chain: &Chain<T>, seen: &mut dyn FnMut(usize, &Pose2<T>)) {
+        if chain.filter().is_some() {
+            return self.track.replay(chain, seen);
+        }
         for (index, (place, moment)) in self.places.iter().zip(self.moments.iter()).enumerate() {
             seen(index, &chain.seen(&moment.sight, &place.lift()));
         }
