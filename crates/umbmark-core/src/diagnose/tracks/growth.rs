@@ -14,37 +14,10 @@ const SHOWN: f64 = 8.0;
 /// Shapes keep their values unless the size is still this many standard errors from zero with them, or AICc falls by this.
 const SURE: f64 = 4.0;
 const LIKELIER: f64 = 10.0;
-/// Larger classes are not fitted effect by effect.
-const MOST_FITTED: usize = 4;
 
 /// The model of an examination with one more suspect, fitted: first its sizes, then also its shapes if its size is significant.
 pub(crate) fn grown(exam: &Examination, suspect: &Suspect) -> Result<Fitted, FitError> {
     fitted(exam, &with(exam.fitted.model.clone(), suspect)?, suspect.best)
-}
-
-/// The same with the effect of the suspect's class that fits best, where fits can say more than one step from the usual shapes: a time
-/// or a length of one may be far from them. Returns the suspect with that effect as its best.
-pub(crate) fn grown_by_best(exam: &Examination, suspect: Suspect) -> Result<(Fitted, Suspect), FitError> {
-    let mut best = grown(exam, &suspect)?;
-    let is_shaped = |name: &&str| {
-        crate::effect::find(name).is_ok_and(|entry| entry.about.parameters.iter().any(|p| p.role == Role::Shape))
-    };
-    if suspect.class.len() > MOST_FITTED || !suspect.class.iter().any(|name| is_shaped(name)) {
-        return Ok((best, suspect));
-    }
-    let aicc = |fitted: &Fitted| Alone::new(fitted.clone()).criteria().0;
-    let (mut least, mut found) = (aicc(&best), suspect.clone());
-    for other in suspect.class.iter().filter(|other| **other != suspect.best) {
-        let rival = Suspect { best: other, estimate: Vec::new(), ..suspect.clone() };
-        let fitted = grown(exam, &rival)?;
-        let criterion = aicc(&fitted);
-        if criterion < least - LIKELIER {
-            let estimate = estimates(&fitted).into_iter().filter(|e| e.effect == rival.best).collect();
-            (least, best, found) = (criterion, fitted, Suspect { estimate, ..rival });
-        }
-    }
-    found.class.sort_by_key(|name| *name != found.best);
-    Ok((best, found))
 }
 
 /// The model of an examination with one more law outside the catalogue, fitted in the same way, and the name of the law there.

@@ -210,8 +210,7 @@ impl Search {
             (watch.progress)((self.added.len() + 1) as f64 / (most + 1) as f64);
             let outdone = wanted == Wanted::All && self.is_outdone(options);
             if let Some((finding, suspect)) = self.left.effect.clone().filter(|_| !outdone) {
-                let (fitted, suspect) = growth::grown_by_best(self.last(), suspect)?;
-                let exam = self.last().of_grown(fitted)?;
+                let exam = self.last().of_grown(growth::grown(self.last(), &suspect)?)?;
                 let grown = match self.borne_out(exam, suspect.best)? {
                     Growth::Stands(grown) => grown,
                     failed => {
