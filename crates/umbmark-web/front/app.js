@@ -62,7 +62,7 @@ async function begin(kind) {
 
 const drive = drivePart({ hide: (runs) => act({ act: "hide", runs }) });
 const story = storyPart({ act });
-const drag = latest((values) => post("api/predict", values), (told) => { drive.model(told.runs); model.error(told.errors?.rmse_m); }, fail);
+const drag = latest((values) => post("api/predict", values), (told, values) => { drive.model(told.runs); if (Object.keys(values).length) model.error(told.errors?.rmse_m); }, fail);
 const model = modelPart({ act, job: begin, drag, fail, catalogue });
 const figures = figuresPart({ mark: (name) => drive.mark(name), catalogue });
 const cloud = cloudPart({ fail });

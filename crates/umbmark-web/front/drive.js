@@ -27,7 +27,7 @@ export function drivePart(page) {
     h("div", { class: "controls" },
       h("label", { for: "moment" }, "time"), moment, momentOut,
       h("label", { for: "enlarge" }, "error × "), enlarge, enlargeOut),
-    h("div", { class: "buttons" }, play),
+    h("div", { class: "buttons" }, play, h("span", { class: "hint" }, "Distances from the believed path are drawn so many times larger.")),
     h("h3", {}, "Distance of the measured from the modelled place"), strip, says,
     h("details", {}, h("summary", {}, "Runs"), h("p", { class: "hint" }, "Hiding a run changes the drawing only; all runs are fitted."), h("div", { class: "buttons" },
       h("button", { type: "button", onclick: () => show([]) }, "all"), h("button", { type: "button", onclick: () => show(runs.map((run) => run.name)) }, "none")), runsBox));
@@ -96,7 +96,7 @@ export function drivePart(page) {
   /** @param {Record<string, string>} c @param {number} by @param {[Run, number][]} shown */
   function paintPlan(c, by, shown) {
     const wide = plan.clientWidth || 300;
-    const { pen, width, height, size } = sheet(plan, Math.min(0.8 * wide, 520));
+    const { pen, width, height, size } = sheet(plan, Math.min(0.75 * wide, 400));
     let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
     const wider = (/** @type {number} */ x, /** @type {number} */ y) => { left = Math.min(left, x); right = Math.max(right, x); low = Math.min(low, y); high = Math.max(high, y); };
     for (const run of runs) for (let i = 0; i < run.computed.x.length; i += 4) wider(run.computed.x[i], run.computed.y[i]);
@@ -165,7 +165,7 @@ export function drivePart(page) {
   function paintStrip(c, shown) {
     const { pen, width, height, size } = sheet(strip, 170);
     const timed = runs.some((run) => run.time.length > 0 && run.measured.place.length > 1);
-    const [left, bottom] = [4.2 * size, height - 1.7 * size];
+    const [left, bottom] = [5.2 * size, height - 1.7 * size];
     let most = 1e-4;
     for (const [run, k] of shown) for (let j = 0; j < run.measured.place.length; j += 1) most = Math.max(most, error(k, j));
     const end = timed ? last() : Math.max(1, shown.length);

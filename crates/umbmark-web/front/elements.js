@@ -20,6 +20,9 @@ export function h(tag, attributes = {}, ...inside) {
   return element;
 }
 
+/** A name of an effect, that may break after its underscores. @param {string} name */
+export const breaks = (name) => name.split("_").flatMap((part, index) => (index ? ["_", document.createElement("wbr"), part] : [part]));
+
 /** @param {string} id @returns {any} */
 export const by = (id) => document.getElementById(id);
 

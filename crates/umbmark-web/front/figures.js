@@ -78,7 +78,7 @@ export function figuresPart(page) {
       return copy;
     });
     const size = Math.max(11, 0.78 * parseFloat(getComputedStyle(document.documentElement).fontSize));
-    const layout = { ...told.plot.layout, font: { ...told.plot.layout.font, color: c.ink, size }, hoverlabel: { bgcolor: c.raised, font: { color: c.ink, size } } };
+    const layout = { ...told.plot.layout, font: { ...told.plot.layout.font, color: c.ink, size }, modebar: { bgcolor: "rgba(0,0,0,0)", color: c.soft, activecolor: c.ink }, hoverlabel: { bgcolor: c.raised, font: { color: c.ink, size } } };
     for (const axis of Object.keys(layout).filter((name) => /^[xy]axis/.test(name))) layout[axis] = { ...layout[axis], gridcolor: c.grid, linecolor: c.soft };
     plot.style.height = `${layout.height}px`;
     plot.setAttribute("aria-label", `${told.title}: ${told.told.says}`);

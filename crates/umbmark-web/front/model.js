@@ -1,7 +1,7 @@
 // @ts-check
 // The model as a list, its numbers on sliders, what is suggested, the catalogue and laws of one's own.
 
-import { h, mm, pText, plain } from "./elements.js";
+import { breaks, h, mm, pText, plain } from "./elements.js";
 import { leaves } from "./story.js";
 import { post } from "./server.js";
 
@@ -117,7 +117,7 @@ export function modelPart(page) {
       page.act({ act: "set", effect, parameter: number.name, value });
     });
     const unit = number.unit ? ` [${number.unit}]` : "";
-    return h("div", { class: "number" }, h("label", { for: id, title: number.meaning }, `${number.name}${unit}`), box, number.choices.length ? null : range);
+    return h("div", { class: "number" }, h("label", { for: id, title: number.meaning }, breaks(number.name), unit), box, number.choices.length ? null : range);
   }
 
   /** What was drawn last, so that a slider in the hand is not taken away. */
@@ -142,7 +142,7 @@ export function modelPart(page) {
       drawn = key;
       const focus = document.activeElement?.id;
       list.replaceChildren(...(model.length ? model.map((/** @type {any} */ part) => h("div", { class: "part", "data-part": part.effect },
-        h("header", {}, h("strong", {}, part.effect), h("span", {},
+        h("header", {}, h("strong", {}, breaks(part.effect)), h("span", {},
           h("label", { class: "small" }, h("input", { type: "checkbox", checked: part.free, onchange: (/** @type {any} */ e) => page.act({ act: "free", effect: part.effect, free: e.target.checked }) }), " fit "),
           h("button", { type: "button", "aria-label": `Remove ${part.effect}`, onclick: () => page.act({ act: "remove", effect: part.effect }) }, "×"))),
         part.formula ? h("code", {}, `${part.formula.acts_on} = ${part.formula.text}`) : null,

@@ -1,7 +1,7 @@
 // @ts-check
 // The story so far: each step with the error that it leaves out, and the way back to it.
 
-import { degrees, h, mm, pText } from "./elements.js";
+import { breaks, degrees, h, mm, pText } from "./elements.js";
 
 /** The error that counts: of held-out runs, once something was fitted. @param {any} errors */
 export const leaves = (errors) => errors.heldout_rmse_m ?? errors.rmse_m;
@@ -19,9 +19,10 @@ export function storyPart(page) {
     const most = Math.max(1e-9, ...all.map((errors) => leaves(errors) ?? 0));
     const bar = (/** @type {any} */ errors) => h("span", { class: "bar", "aria-hidden": "true" }, h("span", { style: `width: ${(100 * (leaves(errors) ?? 0)) / most}%` }));
     const line = (/** @type {any} */ step) => [
-      h("span", {}, step.words, step.learnt ? h("span", { class: "hint" }, " by learn") : null, step.p_adjusted !== null ? h("span", { class: "hint" }, ` ${pText(step.p_adjusted)}`) : null),
+      h("span", {}, breaks(step.words)),
       h("span", { class: "value", title: degrees(step.errors.heldout_heading_rmse_rad) }, mm(leaves(step.errors))),
       bar(step.errors),
+      step.learnt || step.p_adjusted !== null ? h("span", { class: "hint" }, [step.learnt ? "by learn" : "", pText(step.p_adjusted)].filter(Boolean).join(", ")) : null,
     ];
     const rows = state.steps.map((/** @type {any} */ step, /** @type {number} */ index) => h("li", {}, h("button", {
       type: "button", "aria-current": index === state.at ? "step" : null, class: index > state.at ? "later" : "", "data-step": index,
@@ -29,7 +30,7 @@ export function storyPart(page) {
     }, line(step))));
     if (state.draft) {
       const { draft } = state;
-      const row = h("li", { class: "draft", id: "draft" }, h("span", {}, draft.words, h("span", { class: "hint" }, draft.fitted ? " fitted, not accepted" : " not fitted")), h("span", { class: "value" }, mm(leaves(draft.errors))), bar(draft.errors));
+      const row = h("li", { class: "draft", id: "draft" }, h("span", {}, breaks(draft.words), h("span", { class: "hint" }, draft.fitted ? " fitted, not accepted" : " not fitted")), h("span", { class: "value" }, mm(leaves(draft.errors))), bar(draft.errors));
       rows.splice(state.at + 1, 0, row);
     }
     list.replaceChildren(...rows);
