@@ -246,6 +246,39 @@ fn the_report_is_that_of_the_verb_and_the_cloud_is_that_of_mc() {
     assert_eq!((&cloud["result"]["metrics"], &cloud["result"]["effects"]), (&theirs["metrics"], &theirs["effects"]));
 }
 
+/// Each waits for what it shares with the others, on threads that take up each other's work.
+#[test]
+fn all_figures_are_answered_when_they_are_asked_for_at_once() {
+    let place = place("slope");
+    let server = Server::of(place.path(), &["slope", "--threads", "2"]);
+    server.act(&json!({ "act": "first" }));
+    let names: Vec<String> = server.get("api/catalogue").json()["figures"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|figure| figure["name"].as_str().unwrap().to_owned())
+        .collect();
+    let (told, answers) = std::sync::mpsc::channel();
+    std::thread::scope(|scope| {
+        for name in &names {
+            let (told, server) = (told.clone(), &server);
+            scope.spawn(move || {
+                let mut stream = TcpStream::connect(&server.host).unwrap();
+                stream.set_read_timeout(Some(Duration::from_secs(120))).unwrap();
+                let path = format!("/{}/api/figure?name={name}", server.token);
+                let head = format!("GET {path} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", server.host);
+                stream.write_all(head.as_bytes()).unwrap();
+                let mut answer = Vec::new();
+                let read = stream.read_to_end(&mut answer).is_ok();
+                told.send((name.clone(), read && answer.starts_with(b"HTTP/1.1 200"))).unwrap();
+            });
+        }
+    });
+    drop(told);
+    let wrong: Vec<String> = answers.iter().filter(|(_, answered)| !answered).map(|(name, _)| name).collect();
+    assert!(names.len() > 10 && wrong.is_empty(), "{wrong:?}");
+}
+
 #[test]
 fn a_killed_server_leaves_the_work_and_the_next_one_goes_on_with_it() {
     let place = place("slope");

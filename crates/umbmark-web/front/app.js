@@ -159,7 +159,7 @@ async function take(told) {
   work.hidden = !bench;
   by("place").textContent = bench ? bench.place : "";
   document.title = bench ? `${bench.place.split("/").pop()} – umbmark workbench` : "umbmark workbench";
-  if (!bench) { if (!placed) { placed = "none"; data.inspect(); } return; }
+  if (!bench) { if (!placed) { placed = "none"; data.inspect(false); } return; }
   if (fresh || ended || told.bench !== undefined) await show();
 }
 
@@ -169,7 +169,7 @@ async function show() {
     placed = bench.place;
     shown = "";
     report.replaceChildren();
-    data.inspect();
+    data.inspect(true);
     try { drive.data(await get("api/paths")); } catch (error) { fail(/** @type {Error} */ (error)); }
   }
   const { state } = bench;

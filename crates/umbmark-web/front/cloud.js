@@ -48,7 +48,7 @@ export function cloudPart(page) {
     const names = /** @type {[string, string][]} */ ([["e_max_sys_m", "E_max,sys"], ["sigma_m", "sigma"]]);
     const cell = (/** @type {any} */ value) => h("td", {}, mm(value));
     const { metrics } = cloud.result;
-    table.replaceChildren(h("thead", {}, h("tr", {}, ["", "mean", "5 %", "50 %", "95 %"].map((w) => h("th", { scope: "col" }, w)))), h("tbody", {}, names.filter(([key]) => metrics[key]).map(([key, title]) => h("tr", {}, h("th", { scope: "row" }, title), cell(metrics[key].mean), cell(metrics[key].quantiles["0.05"]), cell(metrics[key].quantiles["0.5"]), cell(metrics[key].quantiles["0.95"])))));
+    table.replaceChildren(h("thead", {}, h("tr", {}, ["metric", "mean", "5 %", "50 %", "95 %"].map((w) => h("th", { scope: "col" }, w)))), h("tbody", {}, names.filter(([key]) => metrics[key]).map(([key, title]) => h("tr", {}, h("th", { scope: "row" }, title), cell(metrics[key].mean), cell(metrics[key].quantiles["0.05"]), cell(metrics[key].quantiles["0.5"]), cell(metrics[key].quantiles["0.95"])))));
     command.textContent = cloud.command;
     canvas.setAttribute("aria-label", `Cloud of returns of ${cloud.result.n} tests; mean E_max,sys ${mm(metrics.e_max_sys_m?.mean)}.`);
     canvas.dataset.n = String(cloud.cw.x.length);

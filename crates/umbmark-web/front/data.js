@@ -132,7 +132,7 @@ export function dataPart(page) {
       h("p", { class: "hint" }, "Drive the square five times each way. Measure where the robot stands, from where it believes to stand: x along its heading at START, y to the left, heading counter-clockwise. A heading may be left empty."),
       h("div", { class: "controls" }, h("label", { for: "typed-name" }, "name"), name, ""),
       numbers.map((p, i) => h("div", { class: "controls" }, h("label", { for: `typed-${p.name}`, title: p.meaning }, p.name), h("div", {}, plateInputs[i]), h("span", { class: "small" }, p.unit))),
-      h("div", { class: "scroll" }, h("table", { id: "returns" }, h("thead", {}, h("tr", {}, ["", "direction", "x [mm]", "y [mm]", "heading [deg]"].map((word) => h("th", { scope: "col" }, word)))), h("tbody", {}, body))),
+      h("div", { class: "scroll" }, h("table", { id: "returns" }, h("thead", {}, h("tr", {}, ["return", "direction", "x [mm]", "y [mm]", "heading [deg]"].map((word) => h("th", { scope: "col" }, word)))), h("tbody", {}, body))),
       h("div", { class: "buttons" }, h("button", { type: "button", class: "main", id: "open-typed", onclick: async () => {
         root.querySelectorAll(".mistake").forEach((/** @type {any} */ m) => m.remove());
         root.querySelectorAll("[aria-invalid]").forEach((/** @type {any} */ m) => { m.removeAttribute("aria-invalid"); m.removeAttribute("aria-describedby"); });
@@ -153,11 +153,10 @@ export function dataPart(page) {
       } }, "Open these returns"))));
   }
 
-  async function inspect() {
-    let told;
-    try {
-      told = await get("api/inspection");
-    } catch {
+  /** @param {boolean} open */
+  async function inspect(open) {
+    const told = open ? await get("api/inspection").catch(() => null) : null;
+    if (!told) {
       found.replaceChildren(h("section", { class: "card" }, h("h2", {}, "What the data hold"), h("p", { class: "hint" }, "No data are open.")));
       return;
     }

@@ -176,7 +176,7 @@ export function drivePart(page) {
     for (const y of ticks(0, 1e3 * most, 4)) { pen.beginPath(); pen.moveTo(left, Y(y / 1e3)); pen.lineTo(width - 8, Y(y / 1e3)); pen.stroke(); pen.fillText(`${y} mm`, left - 5, Y(y / 1e3) + size / 3); }
     pen.textAlign = "center";
     if (timed) for (const x of ticks(0, end, width / 90)) pen.fillText(`${x} s`, Math.min(X(x), width - 14), height - 4);
-    const ends = [];
+    /** @type {number[]} */ const ends = [];
     shown.forEach(([run, k], n) => {
       const tone = run.direction === "cw" ? c.cw : run.direction === "ccw" ? c.ccw : c.measured;
       const bold = marked === run.name;

@@ -24,7 +24,7 @@ export function figuresPart(page) {
   /** @type {Set<string>} */ let hidden = new Set();
   const cards = ["residuals_along", "return_errors", "residuals_by_move", "parameters"].map((name, index) => {
     const choice = h("select", { id: `figure-${index}` }, names.map((/** @type {any} */ f) => h("option", { value: f.name, selected: f.name === name }, f.about)));
-    const plot = h("div", { class: "plot", role: "img" });
+    const plot = h("div", { class: "plot", role: "group", "aria-label": "No figure yet" });
     const says = h("p", {});
     const legend = h("ul", { class: "legend" });
     const table = h("details", {});
@@ -45,6 +45,7 @@ export function figuresPart(page) {
     try {
       const told = await get(`api/figure?${query({ name })}`);
       if (card.key !== own) return;
+      if (told.absent) throw new Error(told.absent);
       card.told = told;
       await draw(card);
     } catch (error) {
@@ -79,6 +80,11 @@ export function figuresPart(page) {
     });
     const size = Math.max(11, 0.78 * parseFloat(getComputedStyle(document.documentElement).fontSize));
     const layout = { ...told.plot.layout, font: { ...told.plot.layout.font, color: c.ink, size }, modebar: { bgcolor: "rgba(0,0,0,0)", color: c.soft, activecolor: c.ink }, hoverlabel: { bgcolor: c.raised, font: { color: c.ink, size } } };
+    // Figures grow with their letters; in narrow ones there is no room for a title beside the buttons.
+    const grown = size / told.plot.layout.font.size;
+    const above = plot.clientWidth < 480 && layout.annotations.length ? 2 * size : 0;
+    layout.height = layout.height * grown + above;
+    layout.margin = Object.fromEntries(Object.entries(layout.margin).map(([side, room]) => [side, room * grown + (side === "t" ? above : 0)]));
     for (const axis of Object.keys(layout).filter((name) => /^[xy]axis/.test(name))) layout[axis] = { ...layout[axis], gridcolor: c.grid, linecolor: c.soft };
     plot.style.height = `${layout.height}px`;
     plot.setAttribute("aria-label", `${told.title}: ${told.told.says}`);
@@ -89,7 +95,7 @@ export function figuresPart(page) {
       plot.on("plotly_unhover", () => mark(null));
     }
     card.says.textContent = told.told.says;
-    card.legend.replaceChildren(...told.legend.map(([words, tone, form]) => h("li", {}, h("span", { class: `mark ${form}`, style: `--tone: var(--${tone})` }), words)));
+    card.legend.replaceChildren(...told.legend.map((/** @type {string[]} */ [words, tone, form]) => h("li", {}, h("span", { class: `mark ${form}`, style: `--tone: var(--${tone})` }), words)));
     card.table.replaceChildren(h("summary", {}, "As numbers"), h("p", { class: "small" }, told.told.shows), h("p", { class: "small" }, `Good: ${told.told.good}`), h("div", { class: "scroll" }, h("table", {},
       h("thead", {}, h("tr", {}, told.table.header.map((/** @type {string} */ w) => h("th", { scope: "col" }, w)))), h("tbody", {}, told.table.rows.map((/** @type {string[]} */ row) => h("tr", {}, row.map((cell) => h("td", {}, cell))))))));
   }
@@ -104,7 +110,7 @@ export function figuresPart(page) {
     page.mark(name);
     const Plotly = await plotly();
     for (const card of cards.filter((one) => one.told)) {
-      const changed = card.told.plot.data.map((/** @type {any} */ trace, /** @type {number} */ i) => ({ trace, i })).filter(({ trace }) => trace.customdata && trace.mode === "markers" && trace.marker);
+      const changed = card.told.plot.data.map((/** @type {any} */ trace, /** @type {number} */ i) => ({ trace, i })).filter((/** @type {any} */ { trace }) => trace.customdata && trace.mode === "markers" && trace.marker);
       for (const { trace, i } of changed) {
         const size = trace.customdata.map((/** @type {number} */ run) => (card.told.runs[run] === name ? 2 : 1) * trace.marker.size);
         Plotly.restyle(card.plot, { "marker.size": [name === null ? trace.marker.size : size] }, [i]);

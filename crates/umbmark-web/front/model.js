@@ -175,5 +175,5 @@ export function modelPart(page) {
       ...diagnosis.ranking.slice(0, SHOWN).map(row));
   }
 
-  return { root, show, /** @param {number | null | undefined} metres */ error: (metres) => { error.textContent = `Error with these values: ${mm(metres)}`; } };
+  return { root, show, error: (/** @type {number | null | undefined} */ metres) => { error.textContent = `Error with these values: ${mm(metres)}`; } };
 }

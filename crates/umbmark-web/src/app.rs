@@ -46,6 +46,9 @@ pub struct App {
     /// Logs whose robot is not known yet.
     waiting: Mutex<Option<PathBuf>>,
     report: Arc<Mutex<Option<Vec<u8>>>>,
+    /// Held while a figure is worked out. A thread of the pool that waits for others takes up other work: if that were a second figure of the
+    /// same study, it would wait for what it is itself in the middle of.
+    drawing: Mutex<()>,
 }
 
 /// A question.
@@ -130,6 +133,7 @@ impl App {
             bench: Mutex::new(None),
             waiting: Mutex::new(None),
             report: Arc::default(),
+            drawing: Mutex::new(()),
             served,
         };
         if let Some(place) = app.served.place.clone() {
@@ -345,7 +349,13 @@ impl App {
     fn figure(&self, name: &str) -> Result<Value, Trouble> {
         let kind = kind::find(name).ok_or_else(|| Trouble(format!("There is no figure called \"{name}\".")))?;
         let study = self.bench()?.study()?;
-        let figure = self.pool.install(|| (kind.build)(&study)).map_err(Trouble::because)?;
+        let drawing = self.drawing.lock().unwrap_or_else(PoisonError::into_inner);
+        let figure = self.pool.install(|| (kind.build)(&study));
+        drop(drawing);
+        let figure = match figure {
+            Ok(figure) => figure,
+            Err(absent) => return Ok(json!({ "absent": absent.to_string() })),
+        };
         let legend: Vec<_> = legend::entries(&figure)
             .iter()
             .map(|(name, tone, mark)| json!([name, tone.name(), legend::word(mark, *tone)]))
