@@ -298,7 +298,7 @@ fn a_killed_server_leaves_the_work_and_the_next_one_goes_on_with_it() {
     assert!(next.token != server.token);
     // The file of the work is no part of the data.
     assert!(umbmark(place.path(), "score slope").contains("E_max,sys"));
-    // A file that is none is not taken for the work, and is left alone.
+    // A file that is no such document is not taken for the work, and is left alone.
     drop(next);
     let file = place.path().join("slope/.workbench.json");
     std::fs::write(&file, "{\"version\": 1").unwrap();
