@@ -172,10 +172,8 @@ impl Session {
 
     /// Runs `work` on the number of threads that was asked for.
     pub fn on_threads<R: Send>(&self, work: impl FnOnce() -> R + Send) -> anyhow::Result<R> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.threads())
-            .build()
-            .context("cannot start the threads")?;
+        let pool =
+            rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build().context("cannot start the threads")?;
         Ok(pool.install(work))
     }
 

@@ -1,7 +1,7 @@
 // @ts-check
 // Monte Carlo: the cloud of returns of simulated tests, drawn anew while a slider is dragged.
 
-import { colours, h, mm, plain, sheet, ticks } from "./elements.js";
+import { colours, h, mm, plain, rem, sheet, ticks } from "./elements.js";
 import { latest, post } from "./server.js";
 
 const SLIDERS = /** @type {[string, string, number, number, number, number][]} */ ([
@@ -59,7 +59,7 @@ export function cloudPart(page) {
   function draw() {
     if (!cloud) return;
     const c = colours(["cw", "ccw", "ink", "soft", "grid"]);
-    const { pen, width, height, size } = sheet(canvas, Math.min(canvas.clientWidth || 300, 560));
+    const { pen, width, height, size } = sheet(canvas, Math.min(canvas.clientWidth || 300, 36 * rem()));
     let most = 100;
     for (const one of [cloud.cw, cloud.ccw]) for (const axis of ["x", "y"]) for (const value of one[axis]) { const far = Math.abs(value); if (far > most) most = far; }
     if (most > reach || most < reach / 2.2) reach = 1.15 * most;

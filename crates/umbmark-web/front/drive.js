@@ -1,7 +1,7 @@
 // @ts-check
 // The drive as measured, as the robot believed it, and as the model has it; and the error over time.
 
-import { colours, h, mm, sheet, ticks } from "./elements.js";
+import { colours, h, mm, rem, sheet, ticks } from "./elements.js";
 
 /** @typedef {{ x: number[], y: number[], heading: number[] }} Poses */
 /** @typedef {{ name: string, direction: string | null, time: number[], computed: Poses, measured: { x: number[], y: number[], place: number[] }, dense: boolean }} Run */
@@ -96,7 +96,7 @@ export function drivePart(page) {
   /** @param {Record<string, string>} c @param {number} by @param {[Run, number][]} shown */
   function paintPlan(c, by, shown) {
     const wide = plan.clientWidth || 300;
-    const { pen, width, height, size } = sheet(plan, Math.min(0.75 * wide, 400));
+    const { pen, width, height, size } = sheet(plan, Math.min(0.75 * wide, 26 * rem()));
     let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
     const wider = (/** @type {number} */ x, /** @type {number} */ y) => { left = Math.min(left, x); right = Math.max(right, x); low = Math.min(low, y); high = Math.max(high, y); };
     for (const run of runs) for (let i = 0; i < run.computed.x.length; i += 4) wider(run.computed.x[i], run.computed.y[i]);
@@ -163,7 +163,7 @@ export function drivePart(page) {
 
   /** @param {Record<string, string>} c @param {[Run, number][]} shown */
   function paintStrip(c, shown) {
-    const { pen, width, height, size } = sheet(strip, 170);
+    const { pen, width, height, size } = sheet(strip, 11 * rem());
     const timed = runs.some((run) => run.time.length > 0 && run.measured.place.length > 1);
     const [left, bottom] = [5.2 * size, height - 1.7 * size];
     let most = 1e-4;

@@ -52,10 +52,13 @@ export function sheet(canvas, height) {
   const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   pen.setTransform(scale, 0, 0, scale, 0, 0);
   pen.clearRect(0, 0, width, height);
-  const size = Math.max(11, 0.78 * parseFloat(getComputedStyle(document.documentElement).fontSize));
+  const size = Math.max(11, 0.78 * rem());
   pen.font = `${size}px Roboto, system-ui, sans-serif`;
   return { pen, width, height, size };
 }
+
+/** The size of the letters [CSS pixels]. */
+export const rem = () => parseFloat(getComputedStyle(document.documentElement).fontSize);
 
 /** The colours of the page now. @param {string[]} names */
 export function colours(names) {
