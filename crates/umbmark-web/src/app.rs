@@ -46,8 +46,8 @@ pub struct App {
     /// Logs whose robot is not known yet.
     waiting: Mutex<Option<PathBuf>>,
     report: Arc<Mutex<Option<Vec<u8>>>>,
-    /// Held while a figure is worked out. A thread of the pool that waits for others takes up other work: if that were a second figure of the
-    /// same study, it would wait for what it is itself in the middle of.
+    /// Held while a figure is worked out. A thread of the pool that waits for others may take up other work: if that were a second figure of
+    /// the same study, it could wait for what it is itself in the middle of.
     drawing: Mutex<()>,
 }
 
