@@ -168,7 +168,10 @@ impl App {
                 None => Answer::refused(StatusCode::NOT_FOUND, "no report was made yet"),
             },
             ("POST", "api/act") => self.act(&asked.body).into(),
-            ("POST", "api/predict") => self.predict(&asked.body).into(),
+            ("POST", "api/predict") => match self.predict(&asked.body) {
+                Ok(body) => Answer { status: StatusCode::OK, kind: "application/json", body, download: None },
+                Err(trouble) => Err(trouble).into(),
+            },
             ("POST", "api/formula") => read(&asked.body).and_then(|law: Law| checked(&law)).into(),
             ("POST", "api/job") => self.job(&query("kind").unwrap_or_default()).into(),
             ("POST", "api/cancel") => {
@@ -320,7 +323,7 @@ impl App {
         self.state(None)
     }
 
-    fn predict(&self, body: &[u8]) -> Result<Value, Trouble> {
+    fn predict(&self, body: &[u8]) -> Result<Vec<u8>, Trouble> {
         let (values, bench): (Values, _) = (read(body)?, self.bench()?);
         self.pool.install(|| bench.predict(&values))
     }

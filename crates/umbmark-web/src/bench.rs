@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use serde::Deserialize;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{self, diagnose, first_model};
@@ -64,6 +65,21 @@ struct Work {
     fitted: Option<(String, Value)>,
     /// What is known beside the last model that was asked about.
     study: Option<(String, Arc<Study>)>,
+}
+
+/// Where a model has the robot in each run, and its error: asked for again and again while a slider is dragged.
+#[derive(Debug, Serialize)]
+struct Prediction {
+    runs: Vec<Predicted>,
+    errors: Option<Errors>,
+}
+
+/// The poses of one run \[m, rad\].
+#[derive(Debug, Serialize)]
+struct Predicted {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    heading: Vec<f64>,
 }
 
 /// A change of the work.
@@ -400,8 +416,8 @@ impl Bench {
         Ok(json!({ "recorded": drives.recorded, "runs": drives.runs.iter().map(run).collect::<Vec<_>>() }))
     }
 
-    /// Where a model with these values has the robot, and its error; nothing is changed.
-    pub fn predict(&self, values: &BTreeMap<String, BTreeMap<String, f64>>) -> Result<Value, Trouble> {
+    /// Where a model with these values has the robot, and its error, as JSON; nothing is changed.
+    pub fn predict(&self, values: &BTreeMap<String, BTreeMap<String, f64>>) -> Result<Vec<u8>, Trouble> {
         let mut model = self.model()?;
         for (effect, numbers) in values {
             has(&model, effect)?;
@@ -412,16 +428,14 @@ impl Bench {
         let drives = self.drives.as_ref().map_err(Trouble::because)?;
         let run = |driven: &umbmark_plot::study::Driven| {
             let poses = driven.modelled(&model);
-            let of = |value: fn(&umbmark_core::geometry::Pose2) -> f64| -> Vec<Value> {
-                poses.iter().map(|pose| short(value(pose))).collect()
+            let of = |value: fn(&umbmark_core::geometry::Pose2) -> f64, places: f64| -> Vec<f64> {
+                poses.iter().map(|pose| (value(pose) * places).round() / places).collect()
             };
-            json!({ "x": of(|p| p.x), "y": of(|p| p.y), "heading": of(|p| p.heading) })
+            Predicted { x: of(|p| p.x, 1e5), y: of(|p| p.y, 1e5), heading: of(|p| p.heading, 1e3) }
         };
-        let runs: Vec<Value> = {
-            use rayon::prelude::*;
-            drives.runs.par_iter().map(run).collect()
-        };
-        Ok(json!({ "runs": runs, "errors": self.errors(&model).ok() }))
+        let of_runs = || drives.runs.par_iter().map(run).collect();
+        let (runs, errors) = rayon::join(of_runs, || self.errors(&model).ok());
+        serde_json::to_vec(&Prediction { runs, errors }).map_err(Trouble::because)
     }
 
     /// Fits the free values of the model that is looked at.
