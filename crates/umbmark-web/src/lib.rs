@@ -1,6 +1,6 @@
 //! The workbench of umbmark: a page in the browser on which a model is compared with measurements, changed, fitted and learnt.
 //!
-//! [`serve`] answers on loopback only, and only pages that it sent itself: every address has a random token in it, and the names of the
+//! [`Workbench::serve`] answers on loopback only, and only pages that it sent itself: every address has a random token in it, and the names of the
 //! host and of the asking page are checked. Every number is computed by the functions that the verbs of the command call. All of a user's
 //! work is one JSON document ([`State`]), which is written beside the data.
 
