@@ -132,7 +132,14 @@ export IPYTHONDIR=$made JUPYTER_CONFIG_DIR=$made JUPYTER_DATA_DIR=$made JUPYTER_
 "$python" .ci/render_notebooks.py --check
 rm -rf "$made"
 
-begin 'Report: in a browser'
+begin 'Workbench: types of its page'
+if command -v tsc > /dev/null; then
+    tsc --project crates/umbmark-web/jsconfig.json
+else
+    echo 'skipped: tsc is not installed (npm install --global typescript)'
+fi
+
+begin 'Report and workbench: in a browser'
 if ! command -v chromedriver > /dev/null && [ "$(id -u)" = 0 ] && command -v apt-get > /dev/null; then
     install_chromium || true
 fi

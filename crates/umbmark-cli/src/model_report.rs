@@ -12,7 +12,7 @@ use umbmark_core::result::meaning;
 use umbmark_core::setup::Setup;
 use umbmark_core::solve::Solution;
 use umbmark_core::stats::Interval;
-use umbmark_io::{Doubt, ModelFile};
+use umbmark_io::ModelFile;
 
 use crate::files::Pending;
 use crate::prose::hanging;
@@ -41,9 +41,7 @@ pub fn write_model(model: &Model, noise: Option<Noise>, file: &Path, force: bool
 
 /// Writes the model of an answer, with what speaks against using it.
 pub fn write_learnt(solution: &Solution, file: &Path, force: bool) -> anyhow::Result<()> {
-    let doubt = solution.doubt().map(|because| Doubt { because, alone: !solution.learnt.is_in_doubt() });
-    let learnt = &solution.learnt;
-    let written = ModelFile { noise: learnt.noise, doubt, ..ModelFile::new(learnt.model.clone()) };
+    let written = ModelFile::learnt(solution);
     Pending::write_whole(file, force, &written.text()).context("the model was not written")
 }
 

@@ -165,12 +165,15 @@ impl Session {
         self.out.flush()
     }
 
+    /// The number of threads that was asked for; 0 for all processors.
+    pub fn threads(&self) -> usize {
+        self.options.threads.map_or(0, usize::from)
+    }
+
     /// Runs `work` on the number of threads that was asked for.
     pub fn on_threads<R: Send>(&self, work: impl FnOnce() -> R + Send) -> anyhow::Result<R> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.options.threads.map_or(0, usize::from))
-            .build()
-            .context("cannot start the threads")?;
+        let pool =
+            rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build().context("cannot start the threads")?;
         Ok(pool.install(work))
     }
 

@@ -66,6 +66,8 @@ verbs! {
     Sensitivity(sensitivity),
     /// Find the cheapest tolerances with which enough robots keep a target
     Tolerance(tolerance),
+    /// Open the workbench in the browser: compare a model with measurements, change it, fit it, see the error fall
+    Open(open),
     /// Write everything on one HTML page
     Report(report),
     /// Draw one figure as SVG, PNG or PDF

@@ -18,6 +18,7 @@ mod laws;
 mod r#loop;
 mod mc;
 mod memory;
+mod open;
 mod paper;
 mod plan;
 mod python_classes;

@@ -96,8 +96,8 @@ const COMMANDS: &[&str] = &[
     "effects centripetal_load",
 ];
 
-/// Verbs without text for people: scripts for shells, and a manual page.
-const EXCEPTED: [&str; 1] = ["completions"];
+/// Verbs without text for people: scripts for shells, a manual page, and a server, which goes on.
+const EXCEPTED: [&str; 2] = ["completions", "open"];
 
 /// Words for more than one thing, which never follow a 1.
 const SEVERAL: [&str; 20] = [

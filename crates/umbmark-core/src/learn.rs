@@ -7,12 +7,14 @@
 
 mod ends;
 mod gears;
+mod kept;
 mod misfits;
 mod story;
 mod tracks;
 
 pub(crate) use ends::criteria as criteria_of_ends;
 pub use gears::{GearCalibration, GearError, calibrate_gears};
+pub use kept::Kept;
 pub use story::{Error, Learnt, Step};
 
 use crate::dataset::Dataset;

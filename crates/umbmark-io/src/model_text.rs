@@ -5,11 +5,19 @@ use super::robot_text::robot_text;
 use umbmark_core::effect::{Model, effects_text_with};
 use umbmark_core::likelihood::Noise;
 use umbmark_core::monte_carlo::{Distribution, Draw};
+use umbmark_core::solve::Solution;
 
 impl ModelFile {
     /// A model whose parameters are not drawn.
     pub fn new(model: Model) -> ModelFile {
         ModelFile { model, draws: Vec::new(), conversion: None, noise: None, doubt: None }
+    }
+
+    /// The model of an answer, with what speaks against using it.
+    pub fn learnt(solution: &Solution) -> ModelFile {
+        let doubt = solution.doubt().map(|because| Doubt { because, alone: !solution.learnt.is_in_doubt() });
+        let learnt = &solution.learnt;
+        ModelFile { noise: learnt.noise, doubt, ..ModelFile::new(learnt.model.clone()) }
     }
 
     /// A `model.toml` that reads back as this, to the last bit, with its nominal robot. Effects that a program has added to the

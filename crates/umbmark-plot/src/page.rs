@@ -31,7 +31,8 @@ const TILE: &str = include_str!("page/tile.html");
 const TABLE: &str = include_str!("page/table.html");
 const STYLE: &str = include_str!("page/report.css");
 const SCRIPT: &str = include_str!("page/report.js");
-const PLOTLY: &str = include_str!("../vendor/plotly-basic.min.js");
+/// The library that draws figures in pages.
+pub const PLOTLY: &str = include_str!("../vendor/plotly-basic.min.js");
 
 /// What a part of the page is about, and the sections that stand in it first to last; all others stand in the last.
 const CHAPTERS: [(&str, &str, &[&str]); 3] = [

@@ -9,4 +9,4 @@ pub mod terminal;
 
 mod braille;
 mod font;
-pub(crate) mod legend;
+pub mod legend;

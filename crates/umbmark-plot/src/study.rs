@@ -1,6 +1,7 @@
 //! Everything that is known of a dataset beside one model, each part worked out when it is first asked for.
 
 mod chance;
+mod drives;
 mod paths;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,6 +23,7 @@ use umbmark_core::solve::{Solution, solve};
 use umbmark_core::watch::Watch;
 
 pub use chance::Chance;
+pub use drives::{Driven, Drives};
 pub use paths::{Paths, RunPath};
 
 /// Why something cannot be drawn, in a sentence.

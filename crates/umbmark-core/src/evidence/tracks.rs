@@ -47,13 +47,22 @@ impl Evidence for Observed {
     }
 
     fn fit(&self, model: &Model) -> Result<Fit, FitError> {
-        let (fitted, _) = without_silent_taken(fit(self, model)?)?;
-        let fitted = trusted(fitted)?.into_fitted();
-        let (estimates, correlations) = (estimates(&fitted), correlations(fitted.covariance.as_ref()));
-        let Fitted { model, noise, outliers, usual_noise, taken, observed, .. } = fitted;
-        let (noise, setup) = (Some(noise), observed.setup);
-        Ok(Fit { model, estimates, correlations, noise, outliers, usual_noise, setup, taken })
+        Ok(told(fit_alone(self, model)?.into_fitted()))
     }
+}
+
+/// Fits the free parameters of a model as they are reported.
+pub(crate) fn fit_alone(observed: &Observed, model: &Model) -> Result<Alone, FitError> {
+    let (fitted, _) = without_silent_taken(fit(observed, model)?)?;
+    Ok(trusted(fitted)?)
+}
+
+/// A fit as it is reported.
+pub(crate) fn told(fitted: Fitted) -> Fit {
+    let (estimates, correlations) = (estimates(&fitted), correlations(fitted.covariance.as_ref()));
+    let Fitted { model, noise, outliers, usual_noise, taken, observed, .. } = fitted;
+    let (noise, setup) = (Some(noise), observed.setup);
+    Fit { model, estimates, correlations, noise, outliers, usual_noise, setup, taken }
 }
 
 /// Fits the free parameters of a model to the innovations, starting with what the motion says of the reference.

@@ -6,7 +6,7 @@ use crate::diagnose::{Diagnosis, Options, Suspect};
 use crate::drive::Robot;
 use crate::effect::{Model, Part};
 use crate::evidence::ends::{End, Fitted};
-use crate::evidence::{Ends, Evidence, FitError};
+use crate::evidence::{Ends, Evidence, Fit, FitError};
 use crate::watch::Watch;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -54,6 +54,33 @@ pub(super) fn learn(ends: &Ends, start: &Model, options: &Options, watch: &Watch
     remarks.extend(diagnosis.remarks.iter().cloned());
     let (steps, model, verdict) = (story.steps, story.model, diagnosis.verdict);
     Ok(Learnt { steps, verdict, model, noise: None, diagnosis, remarks, partial })
+}
+
+/// The error of a model with the values that it has.
+pub(super) fn error(ends: &Ends, model: &Model) -> Error {
+    squares(ends, model, |_| true).error()
+}
+
+/// The step that a model is with the values that it has.
+pub(super) fn as_it_is(ends: &Ends, model: &Model) -> Step {
+    let mut story = Story { model: model.clone(), ..Story::new(ends) };
+    story.fold_models = vec![model.clone(); story.folds.len()];
+    story.tell(None, Vec::new(), None);
+    story.last().clone()
+}
+
+/// A model fitted to all runs, and again without those of each fold.
+pub(super) fn fit(ends: &Ends, model: &Model) -> Result<(Fit, Step), FitError> {
+    let fit = ends.fit(model)?;
+    let mut story = Story { model: fit.model.clone(), ..Story::new(ends) };
+    let of_fold = |fold: &Ends| {
+        Ok(fitted_if_it_can_be(Fitted::new(fold, &fit.model).map(|own| own.model))?
+            .unwrap_or_else(|| fit.model.clone()))
+    };
+    story.fold_models = story.folds.par_iter().map(of_fold).collect::<Result<_, FitError>>()?;
+    story.tell(None, Vec::new(), None);
+    let step = story.last().clone();
+    Ok((fit, step))
 }
 
 /// At most so many folds: with more runs than these, each fold leaves out several.

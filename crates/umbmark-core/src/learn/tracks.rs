@@ -6,8 +6,8 @@ use crate::compare::tracks::against_as_written;
 use crate::diagnose::tracks::{self, Added, Conclusion, Found, Search, Wanted};
 use crate::diagnose::{Diagnosis, Options, Reason, Verdict};
 use crate::effect::{Model, Part, find};
-use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit};
-use crate::evidence::{Estimate, Evidence, FitError};
+use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit, fit_alone, told};
+use crate::evidence::{Estimate, Evidence, Fit, FitError};
 use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE, stands_for_the_reference};
 use crate::watch::Watch;
 
@@ -278,6 +278,30 @@ fn kept<'a>(model: &'a Model, fitted: &'a [Estimate]) -> impl Iterator<Item = St
     let fitted_parts =
         model.parts().iter().filter(move |part| part.free && fitted.iter().any(|e| e.effect == part.effect.name()));
     fitted_parts.flat_map(of_part)
+}
+
+/// The error of a model with the values that it has.
+pub(super) fn error(observed: &Observed, model: &Model) -> Result<Error, FitError> {
+    Ok(step(observed.unfitted(&fixed(model), &Noise::default()), None).error)
+}
+
+/// The step that a model is with the values that it has.
+pub(super) fn as_it_is(observed: &Observed, model: &Model) -> Result<Step, FitError> {
+    Ok(step(plainly(observed, &fixed(model))?, None))
+}
+
+/// A model of which nothing is free.
+fn fixed(model: &Model) -> Model {
+    let mut fixed = Model::new(model.robot());
+    model.parts().iter().for_each(|part| fixed.adopt(&Part { free: false, ..part.clone() }));
+    fixed
+}
+
+/// A model fitted to all runs, and its errors.
+pub(super) fn fit_whole(observed: &Observed, model: &Model) -> Result<(Fit, Step), FitError> {
+    let alone = fit_alone(observed, model)?;
+    let step = step_of(&alone, None);
+    Ok((told(alone.into_fitted()), step))
 }
 
 /// A model fitted under noise of the usual size: enough for its errors.
