@@ -69,13 +69,10 @@ def delay(learn: Json, truth: Json) -> Json | None:
     said = fitted(learn, "reference_delay", "delay_s")
     true = truth["apparent_delay_s"]
     numbers = truth["numbers"]
-    follows_late = {
-        "wheel_lag": numbers["faults"]["counts_commands"],
-        "reference_filter": numbers["reference"]["filter_s"],
-    }
-    for effect, is_there in follows_late.items():
+    follows = numbers["faults"]["counts_commands"] or numbers["reference"]["filter_s"]
+    for effect in ("wheel_lag", "reference_filter") if follows else ():
         lag = [fitted(learn, effect, name) for name in ("share", "time_constant_s")]
-        if lag[0] and lag[1] and is_there:
+        if lag[0] and lag[1]:
             late = lag[0][0] * lag[1][0] + (said[0] if said else 0.0)
             return {"said": late, "true": true, "within": abs(late - true) <= DELAY_S}
     if said is None:
