@@ -51,13 +51,27 @@ CAUSES: dict[str, dict[str, float]] = {
         "marker_yaw": 6.6e-3,
     },
 }
-FITTED = {"side_diameter_ratio", "front_diameter_ratio", "wheelbase", "roller_scale"}
+for crossed in ("omni4", "omni4x"):
+    CAUSES[crossed] = {"omni_axle_ratio": 3e-3, "omni_pair_ratio": 3e-3}
+    CAUSES[crossed] |= {
+        name: size for name, size in CAUSES["omni3"].items() if name != "rear_diameter_ratio"
+    }
+FITTED = {"side_diameter_ratio", "front_diameter_ratio", "omni_side_ratio", "wheelbase"}
+FITTED |= {"roller_scale"}
 """What every fit has, so that it is nothing found."""
 ROBOT = {
     "mecanum": "wheel_distance_length_m = 0.3\nwheel_distance_width_m = 0.35\n"
     "wheel_diameter_m = 0.15",
     "omni3": "wheel_distance_m = 0.2\nwheel_diameter_m = 0.10",
+    "omni4": "wheel_distance_m = 0.2\nwheel_offset_rad = 0\nwheel_diameter_m = 0.10",
+    "omni4x": f"wheel_distance_m = 0.2\nwheel_offset_rad = {math.pi / 4}\nwheel_diameter_m = 0.10",
 }
+PLACES = {
+    "omni3": [-math.pi / 3, math.pi / 3, math.pi],
+    "omni4": [0, math.pi / 2, math.pi, -math.pi / 2],
+    "omni4x": [math.pi / 4, 3 * math.pi / 4, -3 * math.pi / 4, -math.pi / 4],
+}
+"""Directions of omni wheels from straight ahead."""
 
 
 def rows(drive: str, distance: float) -> np.ndarray:
@@ -69,11 +83,10 @@ def rows(drive: str, distance: float) -> np.ndarray:
             for x, y in corners
         ]
     else:
-        places = [-math.pi / 3, math.pi / 3, math.pi]
         radius = 0.2 * distance
         wheels = [
             ((radius * math.cos(a), radius * math.sin(a)), a - math.pi / 2, a - math.pi / 2)
-            for a in places
+            for a in PLACES[drive]
         ]
     made = []
     for (x, y), rolls, axis in wheels:
@@ -96,6 +109,14 @@ def sizes(drive: str, first: float, cause: str | None, size: float) -> np.ndarra
             share(1 + own.get("axle_diameter_ratio", 0)),
         )
         return np.array([1 - s + d + a, 1 + s - d + a, 1 - s - d - a, 1 + s + d - a])
+    if drive.startswith("omni4"):
+        across, along = np.sin(PLACES[drive]), np.cos(PLACES[drive])
+        s, a, p = (
+            share(first) / np.abs(across).max(),
+            share(1 + own.get("omni_axle_ratio", 0)) / np.abs(along).max(),
+            share(1 + own.get("omni_pair_ratio", 0)),
+        )
+        return 1 - s * across + a * along + p * np.array([1, -1, 1, -1])
     rear = 1 + own.get("rear_diameter_ratio", 0)
     front = 3 / (2 + rear)
     right = 2 / (1 + first)
@@ -211,7 +232,7 @@ def judged(umbmark: str, drive: str, hidden: dict[str, Any]) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
         (folder / "runs").mkdir()
-        robot = f'[robot]\nname = "made"\ndrive = "{drive}"\n{ROBOT[drive]}\n'
+        robot = f'[robot]\nname = "made"\ndrive = "{drive.removesuffix("x")}"\n{ROBOT[drive]}\n'
         robot += f"ticks_per_revolution = {PER_REVOLUTION}\n"
         (folder / "robot.toml").write_text(robot)
         for number in range(RUNS):

@@ -15,6 +15,7 @@ macro_rules! every_drive {
             Tricycle(tricycle::TricycleDrive),
             Mecanum(mecanum::MecanumDrive),
             Omni3(omni3::Omni3Drive),
+            Omni4(omni4::Omni4Drive),
         }
     };
 }
@@ -159,6 +160,13 @@ macro_rules! drives {
             pub fn rollers(&self) -> Option<Rollers> {
                 match self {
                     $(Drive::$kind(drive) => drive.rollers(),)+
+                }
+            }
+
+            /// Cosine and sine of twice the direction of the first of four omni wheels from straight ahead; zeros of other drives.
+            pub fn omni_axes(&self) -> [f64; 2] {
+                match self {
+                    $(Drive::$kind(drive) => drive.omni_axes(),)+
                 }
             }
 
@@ -421,6 +429,7 @@ impl Robot {
             wheel_radius: [0.5 * self.drive.wheel_diameter_left(), 0.5 * self.drive.wheel_diameter_right()],
             metres_per_tick: self.metres_per_tick(),
             axle_distance: self.drive.axle_distance(),
+            omni_axes: self.drive.omni_axes(),
         }
     }
 

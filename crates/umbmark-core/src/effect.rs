@@ -88,8 +88,12 @@ register! {
     axle_diameter_ratio,
     front_diameter_ratio,
     rear_diameter_ratio,
+    omni_side_ratio,
+    omni_axle_ratio,
+    omni_pair_ratio,
     roller_scale,
     lateral_scale,
+    sideways_turn_slip,
     // Two trucks, and the link between them.
     rear_truck,
     link_length,

@@ -159,7 +159,10 @@ impl DriveKind {
 
 /// Some kinds of drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DriveKinds(u8);
+pub struct DriveKinds(u32);
+
+// A bit for each kind.
+const _: () = assert!(DriveKind::ALL.len() < u32::BITS as usize);
 
 impl DriveKinds {
     /// Every drive.

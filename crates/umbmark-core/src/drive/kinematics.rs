@@ -86,6 +86,11 @@ pub(super) trait Kinematics: Sized {
         None
     }
 
+    /// See [`Drive::omni_axes`](super::Drive::omni_axes).
+    fn omni_axes(&self) -> [f64; 2] {
+        [0.0; 2]
+    }
+
     /// Its axle, real or virtual.
     fn axle(&self) -> &DifferentialDrive;
 

@@ -15,6 +15,7 @@ Drive: TypeAlias = Literal[
     "tricycle",
     "mecanum",
     "omni3",
+    "omni4",
 ]
 Shape: TypeAlias = Literal[
     "square",
@@ -63,8 +64,12 @@ EffectName: TypeAlias = Literal[
     "axle_diameter_ratio",
     "front_diameter_ratio",
     "rear_diameter_ratio",
+    "omni_side_ratio",
+    "omni_axle_ratio",
+    "omni_pair_ratio",
     "roller_scale",
     "lateral_scale",
+    "sideways_turn_slip",
     "rear_truck",
     "link_length",
     "rotary_zero_difference",
@@ -151,6 +156,7 @@ class RobotKeys(TypedDict, total=False):
     wheel_diameter_3_m: float | None
     wheel_diameter_4_m: float | None
     wheel_distance_m: float | None
+    wheel_offset_rad: float | None
 
 
 class MotionKeys(TypedDict, total=False):
