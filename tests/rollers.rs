@@ -200,3 +200,27 @@ fn turning_that_a_mecanum_base_loses_on_the_way_to_the_side_is_found() {
     ];
     finds_with(robot, &wheels, &hidden, lost);
 }
+
+#[test]
+fn three_tracking_wheels_are_read_as_they_were_made() {
+    let [sides, across, scale, distance, ahead] = [1.01, 0.992, 1.004, 1.02, 4e-3];
+    let share = (sides - 1.0) / (sides + 1.0);
+    let wheel = |at: [f64; 2], rolls: f64, size: f64| Wheel { at, rolls, axis: rolls, diameter: 0.05 * scale * size };
+    let half = 0.15 * distance;
+    let wheels = [
+        wheel([0.0, half], 0.0, 1.0 - share),
+        wheel([0.0, -half], 0.0, 1.0 + share),
+        wheel([-0.1 * distance + ahead, 0.0], FRAC_PI_2, across),
+    ];
+    let robot =
+        "drive = \"dead_wheels\"\nwheel_distance_width_m = 0.3\nacross_wheel_ahead_m = -0.1\nwheel_diameter_m = 0.05";
+    let hidden = [
+        ("along_diameter_ratio", "ratio", sides, 3e-4),
+        ("across_diameter_ratio", "ratio", across, 5e-4),
+        // A wheel that stands elsewhere moves what is tracked as a tracked point does that stands elsewhere the other way.
+        ("marker_offset", "forward_m", -ahead, 1e-3),
+        ("roller_scale", "e_s", scale, 3e-4),
+        ("wheelbase", "e_b", distance, 1e-3),
+    ];
+    finds(robot, &wheels, &hidden);
+}

@@ -16,6 +16,7 @@ macro_rules! every_drive {
             Mecanum(mecanum::MecanumDrive),
             Omni3(omni3::Omni3Drive),
             Omni4(omni4::Omni4Drive),
+            DeadWheels(dead_wheels::DeadWheelsDrive),
         }
     };
 }
@@ -163,10 +164,12 @@ macro_rules! drives {
                 }
             }
 
-            /// Cosine and sine of twice the direction of the first of four omni wheels from straight ahead; zeros of other drives.
-            pub fn omni_axes(&self) -> [f64; 2] {
+            /// How wheels with rollers stand, where laws have to know: of four omni wheels, cosine and sine of twice the direction of the first
+            /// from straight ahead; of tracking wheels, how far the one across stands ahead, over half the distance of the other two, and zero;
+            /// zeros of other drives.
+            pub fn wheel_layout(&self) -> [f64; 2] {
                 match self {
-                    $(Drive::$kind(drive) => drive.omni_axes(),)+
+                    $(Drive::$kind(drive) => drive.wheel_layout(),)+
                 }
             }
 
@@ -429,7 +432,7 @@ impl Robot {
             wheel_radius: [0.5 * self.drive.wheel_diameter_left(), 0.5 * self.drive.wheel_diameter_right()],
             metres_per_tick: self.metres_per_tick(),
             axle_distance: self.drive.axle_distance(),
-            omni_axes: self.drive.omni_axes(),
+            wheel_layout: self.drive.wheel_layout(),
         }
     }
 

@@ -15,8 +15,10 @@ pub struct Nominal {
     /// Distance of the steered wheel from the axle \[m\]; for a drive without one, that of a wheel which would steer it as far before the
     /// axle as its wheels are apart.
     pub axle_distance: f64,
-    /// Cosine and sine of twice the direction of the first of four omni wheels from straight ahead; zeros of other drives.
-    pub omni_axes: [f64; 2],
+    /// How wheels with rollers stand, where laws have to know: of four omni wheels, cosine and sine of twice the direction of the first
+    /// from straight ahead; of tracking wheels, how far the one across stands ahead, over half the distance of the other two, and zero;
+    /// zeros of other drives.
+    pub wheel_layout: [f64; 2],
 }
 
 /// Where a run stands in its session.
@@ -108,8 +110,8 @@ pub struct Context<T = f64> {
     pub wheelbase: f64,
     /// Distance of the steered wheel from the axle \[m\]; see [`Nominal::axle_distance`].
     pub axle_distance: f64,
-    /// Directions of four omni wheels; see [`Nominal::omni_axes`].
-    pub omni_axes: [f64; 2],
+    /// How wheels with rollers stand; see [`Nominal::wheel_layout`].
+    pub wheel_layout: [f64; 2],
     /// Number of the run in the session, from 0.
     pub run: f64,
     /// Sense of the run: +1 counter-clockwise, -1 clockwise, 0 where it has none.
@@ -150,7 +152,7 @@ impl Context {
             truck: self.truck,
             wheelbase: self.wheelbase,
             axle_distance: self.axle_distance,
-            omni_axes: self.omni_axes,
+            wheel_layout: self.wheel_layout,
             run: self.run,
             direction: self.direction,
             clock_excess: self.clock_excess,
@@ -277,7 +279,7 @@ impl Progress {
             recorded,
             wheelbase: nominal.wheelbase,
             axle_distance: nominal.axle_distance,
-            omni_axes: nominal.omni_axes,
+            wheel_layout: nominal.wheel_layout,
             ..Context::default()
         };
         Progress {
@@ -419,7 +421,7 @@ mod tests {
             wheel_radius: [0.075; 2],
             metres_per_tick: WheelTravel { left: tick, right: tick },
             axle_distance: 0.34,
-            omni_axes: [0.0; 2],
+            wheel_layout: [0.0; 2],
         }
     }
 

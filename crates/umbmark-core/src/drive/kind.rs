@@ -41,6 +41,7 @@ struct Facts {
     steers: bool,
     drives_front_wheel: bool,
     has_trucks: bool,
+    is_driven: bool,
     from_values: fn(&[f64]) -> Result<Drive, DriveError>,
 }
 
@@ -59,6 +60,7 @@ impl Facts {
             steers: D::STEERS,
             drives_front_wheel: D::DRIVES_FRONT_WHEEL,
             has_trucks: D::HAS_TRUCKS,
+            is_driven: D::IS_DRIVEN,
             from_values: |values| D::from_values(values).map(Into::into),
         }
     }
@@ -138,6 +140,11 @@ impl DriveKind {
     /// Whether it is two trucks with a link.
     pub fn has_trucks(self) -> bool {
         self.facts().has_trucks
+    }
+
+    /// Whether the wheels that are counted are those that drive the robot; tracking wheels only roll along.
+    pub fn is_driven(self) -> bool {
+        self.facts().is_driven
     }
 
     /// Whether it may have an effect that does not name it.

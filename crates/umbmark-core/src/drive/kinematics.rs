@@ -30,6 +30,9 @@ pub(super) trait Kinematics: Sized {
     /// What the counters of its wheels with rollers are called in files, which stand there in place of the two; none without such.
     const WHEELS: &'static [&'static str] = &[];
 
+    /// Whether the wheels that are counted are those that drive the robot.
+    const IS_DRIVEN: bool = true;
+
     /// The numbers of its nominal robot beside those of the encoder.
     const PARAMETERS: &'static [Parameter];
 
@@ -86,8 +89,8 @@ pub(super) trait Kinematics: Sized {
         None
     }
 
-    /// See [`Drive::omni_axes`](super::Drive::omni_axes).
-    fn omni_axes(&self) -> [f64; 2] {
+    /// See [`Drive::wheel_layout`](super::Drive::wheel_layout).
+    fn wheel_layout(&self) -> [f64; 2] {
         [0.0; 2]
     }
 

@@ -120,7 +120,7 @@ impl Kinematics for Omni4Drive {
         Omni4Drive::new(self.distance * distance, self.offset, std::array::from_fn(wheel))
     }
 
-    fn omni_axes(&self) -> [f64; 2] {
+    fn wheel_layout(&self) -> [f64; 2] {
         let (sine, cosine) = libm::sincos(2.0 * self.offset);
         [cosine, sine]
     }

@@ -35,7 +35,8 @@ impl Effect for LostCycles {
         source: "found in the logs of a mecanum robot of OptiOdom (Sousa et al., 2022)",
     };
 
-    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Mecanum).and(DriveKind::Omni3).and(DriveKind::Omni4);
+    const DRIVES: DriveKinds =
+        DriveKinds::of(DriveKind::Mecanum).and(DriveKind::Omni3).and(DriveKind::Omni4).and(DriveKind::DeadWheels);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

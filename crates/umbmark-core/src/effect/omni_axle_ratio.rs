@@ -47,7 +47,7 @@ impl Effect for OmniAxleRatio {
 impl BodyLaw for OmniAxleRatio {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        let (e, [cosine, sine]) = (share_of_omni_wheels(p[0], at), at.omni_axes);
+        let (e, [cosine, sine]) = (share_of_omni_wheels(p[0], at), at.wheel_layout);
         let (ways, apart) = (Ways::of(at, motion), at.aside.disagreement);
         Ways { ahead: e * (sine * apart), left: e * (ways.round - cosine * apart), round: e * ways.left * 0.5 }
             .add_to(at, motion);

@@ -48,7 +48,7 @@ impl Effect for OmniPairRatio {
 impl BodyLaw for OmniPairRatio {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        let (e, [cosine, sine], ways) = (share(p[0]), at.omni_axes, Ways::of(at, motion));
+        let (e, [cosine, sine], ways) = (share(p[0]), at.wheel_layout, Ways::of(at, motion));
         Ways {
             ahead: -e * (ways.ahead * cosine + ways.left * sine),
             left: e * (ways.left * cosine - ways.ahead * sine),

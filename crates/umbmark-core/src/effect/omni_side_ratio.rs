@@ -47,7 +47,7 @@ impl Effect for OmniSideRatio {
 impl BodyLaw for OmniSideRatio {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        let (e, [cosine, sine]) = (share_of_omni_wheels(p[0], at), at.omni_axes);
+        let (e, [cosine, sine]) = (share_of_omni_wheels(p[0], at), at.wheel_layout);
         let (ways, apart) = (Ways::of(at, motion), at.aside.disagreement);
         Ways { ahead: e * (ways.round + cosine * apart), left: e * (sine * apart), round: e * ways.ahead * 0.5 }
             .add_to(at, motion);

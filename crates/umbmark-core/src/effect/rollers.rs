@@ -40,7 +40,7 @@ pub(super) fn share<T: Real>(ratio: T) -> T {
 /// of their direction.
 #[inline(always)]
 pub(super) fn share_of_omni_wheels<T: Real>(ratio: T, at: &Context<T>) -> T {
-    share(ratio) * (1.0 / libm::sqrt(0.5 + 0.5 * libm::fabs(at.omni_axes[0])))
+    share(ratio) * (1.0 / libm::sqrt(0.5 + 0.5 * libm::fabs(at.wheel_layout[0])))
 }
 
 /// That some wheels of this ratio to others are larger or smaller, and both diameters.

@@ -448,7 +448,7 @@ fn contexts() -> [Context; 2] {
         truck: 1.0,
         wheelbase: 0.34,
         axle_distance: 0.5,
-        omni_axes: [0.6, 0.8],
+        wheel_layout: [0.6, 0.8],
         run: 2.0,
         direction: 1.0,
         clock_excess: 0.03,

@@ -168,8 +168,8 @@ mod tests {
 
     const SAMPLED: Odometry = Odometry::Sampled { rate: 100.0, update: Update::Arc };
 
-    fn robots() -> [Robot; 3] {
-        [DriveKind::Mecanum, DriveKind::Omni3, DriveKind::Omni4]
+    fn robots() -> [Robot; 4] {
+        [DriveKind::Mecanum, DriveKind::Omni3, DriveKind::Omni4, DriveKind::DeadWheels]
             .map(|kind| Robot { drive: kind.usual(), ..Robot::labmate() })
     }
 
@@ -349,7 +349,7 @@ mod tests {
     fn a_robot_that_cannot_move_sideways_is_refused_and_told_which_can() {
         let error = Simulator::new(&Robot::labmate(), &path(&FIXED_SQUARE, 1.0), Odometry::EveryTick, Phase::Edge);
         let said = "a robot with drive = \"differential\" cannot move sideways, as it does in move 2 of the path; drive = \"mecanum\", \
-                    drive = \"omni3\" or drive = \"omni4\" can";
+                    drive = \"omni3\", drive = \"omni4\" or drive = \"dead_wheels\" can";
         assert_eq!(error.unwrap_err().to_string(), said);
         let mut fine = robots()[0].clone();
         fine.encoder = crate::drive::Encoder::new(1e9, None, None).unwrap();

@@ -16,6 +16,7 @@ Drive: TypeAlias = Literal[
     "mecanum",
     "omni3",
     "omni4",
+    "dead_wheels",
 ]
 Shape: TypeAlias = Literal[
     "square",
@@ -67,6 +68,9 @@ EffectName: TypeAlias = Literal[
     "omni_side_ratio",
     "omni_axle_ratio",
     "omni_pair_ratio",
+    "along_diameter_ratio",
+    "across_diameter_ratio",
+    "across_wheel_offset",
     "roller_scale",
     "lateral_scale",
     "sideways_turn_slip",
@@ -157,6 +161,7 @@ class RobotKeys(TypedDict, total=False):
     wheel_diameter_4_m: float | None
     wheel_distance_m: float | None
     wheel_offset_rad: float | None
+    across_wheel_ahead_m: float | None
 
 
 class MotionKeys(TypedDict, total=False):
