@@ -157,7 +157,7 @@ fn four_omni_wheels_of_different_sizes_are_read_as_they_were_made() {
         let wheel = |k: usize| {
             let from_ahead = offset + FRAC_PI_2 * k as f64;
             let (to_the_left, ahead) = from_ahead.sin_cos();
-            let pair = if k % 2 == 0 { share(pairs) } else { -share(pairs) };
+            let pair = if k.is_multiple_of(2) { share(pairs) } else { -share(pairs) };
             let size = 1.0 - share(sides) / most * to_the_left + share(axles) / most * ahead + pair;
             Wheel {
                 at: [0.2 * distance * ahead, 0.2 * distance * to_the_left],
