@@ -221,7 +221,7 @@ fn what_cannot_be_compiled_is_refused_by_name_with_what_can() {
     assert!(said.starts_with("my_drift is a formula") && said.contains("turn_slip_rate"), "{said}");
     let said = refused(&Model::new(&robot_of(DriveKind::Clapper)));
     assert!(said.starts_with("a robot with drive = \"clapper\" cannot be compiled"), "{said}");
-    for kind in [DriveKind::Mecanum, DriveKind::Omni3] {
+    for kind in [DriveKind::Mecanum, DriveKind::Omni3, DriveKind::Omni4, DriveKind::DeadWheels] {
         let said = refused(&Model::new(&robot_of(kind)));
         assert!(said.ends_with("correct its logs on a computer") && said.contains(kind.name()), "{said}");
     }

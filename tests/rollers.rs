@@ -27,6 +27,8 @@ impl Wheel {
 }
 
 const DT: f64 = 1e-3;
+/// Half the nominal sum of both distances of the mecanum wheels \[m\].
+const ARM: f64 = 0.325;
 const PER_REVOLUTION: f64 = 20_000.0;
 
 /// Twists of a run: swings ahead, sideways and round with periods that have nothing to do with each other, between two rests.
@@ -38,8 +40,8 @@ fn twist(run: u32, time: f64) -> [f64; 3] {
     [swing(0.2, ahead, 0.1 * f64::from(run)), swing(0.2, left, 0.3), swing(0.6, round, 0.05 * f64::from(run))]
 }
 
-/// Rows of a log at 50 Hz, each with the pose.
-fn log(wheels: &[Wheel], run: u32) -> String {
+/// Rows of a log at 50 Hz, each with the pose. Of a turn, this share is lost on the way to the side.
+fn log(wheels: &[Wheel], run: u32, lost: f64) -> String {
     let mut text = String::from("t_s");
     (1..=wheels.len()).for_each(|wheel| write!(text, ",ticks_{wheel}").unwrap());
     text += ",x_ref_m,y_ref_m,theta_ref_rad\n";
@@ -56,24 +58,32 @@ fn log(wheels: &[Wheel], run: u32) -> String {
             writeln!(text, ",{:.7},{:.7},{:.7}", x + e, y + f, heading + g).unwrap();
         }
         // The middle of the step: second order.
-        let moved = twist(run, time + 0.5 * DT);
+        let commanded = twist(run, time + 0.5 * DT);
+        let [ahead, left, turn] = commanded;
+        let sideways = left.abs() / (left.abs() + ARM * turn.abs()).max(1e-12);
+        let moved = [ahead, left, turn * (1.0 - lost * sideways)];
         let course = heading + 0.5 * moved[2] * DT;
         x += DT * (moved[0] * course.cos() - moved[1] * course.sin());
         y += DT * (moved[0] * course.sin() + moved[1] * course.cos());
         heading += moved[2] * DT;
-        rolled.iter_mut().zip(wheels).for_each(|(way, wheel)| *way += wheel.rim(moved) * DT);
+        rolled.iter_mut().zip(wheels).for_each(|(way, wheel)| *way += wheel.rim(commanded) * DT);
     }
     text
 }
 
 /// What is learnt of a robot must be what it was made of, and nothing besides.
 fn finds(robot: &str, wheels: &[Wheel], hidden: &[(&str, &str, f64, f64)]) {
+    finds_with(robot, wheels, hidden, 0.0);
+}
+
+/// The same of a robot that loses this share of its turns on the way to the side.
+fn finds_with(robot: &str, wheels: &[Wheel], hidden: &[(&str, &str, f64, f64)], lost: f64) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir_all(folder.path().join("runs")).unwrap();
     let text = format!("[robot]\nname = \"own\"\n{robot}\nticks_per_revolution = {PER_REVOLUTION}\n");
     std::fs::write(folder.path().join("robot.toml"), text).unwrap();
     for run in 0..8 {
-        std::fs::write(folder.path().join(format!("runs/none_{:02}.csv", run + 1)), log(wheels, run)).unwrap();
+        std::fs::write(folder.path().join(format!("runs/none_{:02}.csv", run + 1)), log(wheels, run, lost)).unwrap();
     }
     let data = umbmark_io::load(folder.path()).unwrap();
     let learnt = learn(&data, &Options { draws: 199, ..Options::default() }).unwrap();
@@ -131,6 +141,84 @@ fn three_omni_wheels_of_different_sizes_are_read_as_they_were_made() {
     let hidden = [
         ("front_diameter_ratio", "ratio", fronts, 3e-4),
         ("rear_diameter_ratio", "ratio", rear, 3e-4),
+        ("roller_scale", "e_s", scale, 3e-4),
+        ("wheelbase", "e_b", distance, 1e-3),
+    ];
+    finds(robot, &wheels, &hidden);
+}
+
+/// Both arrangements: wheels in front, behind and on both sides, and wheels at the corners.
+#[test]
+fn four_omni_wheels_of_different_sizes_are_read_as_they_were_made() {
+    let [sides, axles, pairs, scale, distance] = [1.01, 0.992, 1.006, 1.004, 1.02];
+    let share = |ratio: f64| (ratio - 1.0) / (ratio + 1.0);
+    for offset in [0.0, FRAC_PI_4] {
+        let most = f64::max(offset.sin(), offset.cos());
+        let wheel = |k: usize| {
+            let from_ahead = offset + FRAC_PI_2 * k as f64;
+            let (to_the_left, ahead) = from_ahead.sin_cos();
+            let pair = if k.is_multiple_of(2) { share(pairs) } else { -share(pairs) };
+            let size = 1.0 - share(sides) / most * to_the_left + share(axles) / most * ahead + pair;
+            Wheel {
+                at: [0.2 * distance * ahead, 0.2 * distance * to_the_left],
+                rolls: from_ahead - FRAC_PI_2,
+                axis: from_ahead - FRAC_PI_2,
+                diameter: 0.10 * scale * size,
+            }
+        };
+        let robot =
+            format!("drive = \"omni4\"\nwheel_distance_m = 0.2\nwheel_offset_rad = {offset}\nwheel_diameter_m = 0.10");
+        let hidden = [
+            ("omni_side_ratio", "ratio", sides, 3e-4),
+            ("omni_axle_ratio", "ratio", axles, 3e-4),
+            ("omni_pair_ratio", "ratio", pairs, 3e-4),
+            ("roller_scale", "e_s", scale, 3e-4),
+            ("wheelbase", "e_b", distance, 1e-3),
+        ];
+        finds(&robot, &[0, 1, 2, 3].map(wheel), &hidden);
+    }
+}
+
+#[test]
+fn turning_that_a_mecanum_base_loses_on_the_way_to_the_side_is_found() {
+    let [sides, scale, distance, lost] = [1.01, 1.004, 1.02, 0.03];
+    let share = (sides - 1.0) / (sides + 1.0);
+    let corner = |ahead: f64, left: f64| Wheel {
+        at: [0.15 * distance * ahead, 0.175 * distance * left],
+        rolls: 0.0,
+        axis: -ahead * left * FRAC_PI_4,
+        diameter: 0.15 * scale * (1.0 - left * share),
+    };
+    let wheels = [corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(-1.0, -1.0)];
+    let robot =
+        "drive = \"mecanum\"\nwheel_distance_length_m = 0.3\nwheel_distance_width_m = 0.35\nwheel_diameter_m = 0.15";
+    let hidden = [
+        ("side_diameter_ratio", "ratio", sides, 3e-4),
+        ("sideways_turn_slip", "share", lost, 3e-3),
+        ("roller_scale", "e_s", scale, 3e-4),
+        ("wheelbase", "e_b", distance, 1.5e-3),
+    ];
+    finds_with(robot, &wheels, &hidden, lost);
+}
+
+#[test]
+fn three_tracking_wheels_are_read_as_they_were_made() {
+    let [sides, across, scale, distance, ahead] = [1.01, 0.992, 1.004, 1.02, 4e-3];
+    let share = (sides - 1.0) / (sides + 1.0);
+    let wheel = |at: [f64; 2], rolls: f64, size: f64| Wheel { at, rolls, axis: rolls, diameter: 0.05 * scale * size };
+    let half = 0.15 * distance;
+    let wheels = [
+        wheel([0.0, half], 0.0, 1.0 - share),
+        wheel([0.0, -half], 0.0, 1.0 + share),
+        wheel([-0.1 * distance + ahead, 0.0], FRAC_PI_2, across),
+    ];
+    let robot =
+        "drive = \"dead_wheels\"\nwheel_distance_width_m = 0.3\nacross_wheel_ahead_m = -0.1\nwheel_diameter_m = 0.05";
+    let hidden = [
+        ("along_diameter_ratio", "ratio", sides, 3e-4),
+        ("across_diameter_ratio", "ratio", across, 5e-4),
+        // A wheel that stands elsewhere moves what is tracked as a tracked point does that stands elsewhere the other way.
+        ("marker_offset", "forward_m", -ahead, 1e-3),
         ("roller_scale", "e_s", scale, 3e-4),
         ("wheelbase", "e_b", distance, 1e-3),
     ];

@@ -51,16 +51,38 @@ CAUSES: dict[str, dict[str, float]] = {
         "marker_yaw": 6.6e-3,
     },
 }
-FITTED = {"side_diameter_ratio", "front_diameter_ratio", "wheelbase", "roller_scale"}
+for crossed in ("omni4", "omni4x"):
+    CAUSES[crossed] = {"omni_axle_ratio": 3e-3, "omni_pair_ratio": 3e-3}
+    CAUSES[crossed] |= {
+        name: size for name, size in CAUSES["omni3"].items() if name != "rear_diameter_ratio"
+    }
+CAUSES["dead_wheels"] = {"across_diameter_ratio": 3e-3, "across_wheel_offset": 3e-3}
+CAUSES["dead_wheels"] |= {
+    name: size
+    for name, size in CAUSES["omni3"].items()
+    if name not in ("rear_diameter_ratio", "lateral_scale")
+}
+FITTED = {"side_diameter_ratio", "front_diameter_ratio", "omni_side_ratio", "wheelbase"}
+FITTED |= {"roller_scale", "along_diameter_ratio"}
 """What every fit has, so that it is nothing found."""
 ROBOT = {
     "mecanum": "wheel_distance_length_m = 0.3\nwheel_distance_width_m = 0.35\n"
     "wheel_diameter_m = 0.15",
     "omni3": "wheel_distance_m = 0.2\nwheel_diameter_m = 0.10",
+    "dead_wheels": "wheel_distance_width_m = 0.3\nacross_wheel_ahead_m = -0.1\n"
+    "wheel_diameter_m = 0.10",
+    "omni4": "wheel_distance_m = 0.2\nwheel_offset_rad = 0\nwheel_diameter_m = 0.10",
+    "omni4x": f"wheel_distance_m = 0.2\nwheel_offset_rad = {math.pi / 4}\nwheel_diameter_m = 0.10",
 }
+PLACES = {
+    "omni3": [-math.pi / 3, math.pi / 3, math.pi],
+    "omni4": [0, math.pi / 2, math.pi, -math.pi / 2],
+    "omni4x": [math.pi / 4, 3 * math.pi / 4, -3 * math.pi / 4, -math.pi / 4],
+}
+"""Directions of omni wheels from straight ahead."""
 
 
-def rows(drive: str, distance: float) -> np.ndarray:
+def rows(drive: str, distance: float, offset: float = 0.0) -> np.ndarray:
     """Way of each rim for a metre ahead, a metre to the left and a radian."""
     if drive == "mecanum":
         corners = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
@@ -68,12 +90,15 @@ def rows(drive: str, distance: float) -> np.ndarray:
             ((0.15 * distance * x, 0.175 * distance * y), 0.0, -x * y * math.pi / 4)
             for x, y in corners
         ]
+    elif drive == "dead_wheels":
+        half = 0.15 * distance
+        across = ((-0.1 * distance + offset, 0.0), math.pi / 2, math.pi / 2)
+        wheels = [((0.0, half), 0.0, 0.0), ((0.0, -half), 0.0, 0.0), across]
     else:
-        places = [-math.pi / 3, math.pi / 3, math.pi]
         radius = 0.2 * distance
         wheels = [
             ((radius * math.cos(a), radius * math.sin(a)), a - math.pi / 2, a - math.pi / 2)
-            for a in places
+            for a in PLACES[drive]
         ]
     made = []
     for (x, y), rolls, axis in wheels:
@@ -96,6 +121,17 @@ def sizes(drive: str, first: float, cause: str | None, size: float) -> np.ndarra
             share(1 + own.get("axle_diameter_ratio", 0)),
         )
         return np.array([1 - s + d + a, 1 + s - d + a, 1 - s - d - a, 1 + s + d - a])
+    if drive == "dead_wheels":
+        s, a = share(first), 1 + own.get("across_diameter_ratio", 0)
+        return np.array([1 - s, 1 + s, a])
+    if drive.startswith("omni4"):
+        across, along = np.sin(PLACES[drive]), np.cos(PLACES[drive])
+        s, a, p = (
+            share(first) / np.abs(across).max(),
+            share(1 + own.get("omni_axle_ratio", 0)) / np.abs(along).max(),
+            share(1 + own.get("omni_pair_ratio", 0)),
+        )
+        return 1 - s * across + a * along + p * np.array([1, -1, 1, -1])
     rear = 1 + own.get("rear_diameter_ratio", 0)
     front = 3 / (2 + rear)
     right = 2 / (1 + first)
@@ -135,7 +171,8 @@ def run(drive: str, hidden: dict[str, Any], number: int, chance: np.random.Gener
     # The nominal base makes wheel speeds of the twist; the true base follows them by least squares.
     ways = twist @ rows(drive, 1.0).T * STEP
     true = ways * hidden["scale"] * sizes(drive, hidden["first"], cause, size)
-    moved = true @ np.linalg.pinv(rows(drive, hidden["distance"])).T
+    offset = size if cause == "across_wheel_offset" else 0.0
+    moved = true @ np.linalg.pinv(rows(drive, hidden["distance"], offset)).T
     if cause == "lateral_scale":
         moved[:, 1] *= 1 - size
     if cause == "crab":
@@ -211,7 +248,7 @@ def judged(umbmark: str, drive: str, hidden: dict[str, Any]) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
         (folder / "runs").mkdir()
-        robot = f'[robot]\nname = "made"\ndrive = "{drive}"\n{ROBOT[drive]}\n'
+        robot = f'[robot]\nname = "made"\ndrive = "{drive.removesuffix("x")}"\n{ROBOT[drive]}\n'
         robot += f"ticks_per_revolution = {PER_REVOLUTION}\n"
         (folder / "robot.toml").write_text(robot)
         for number in range(RUNS):

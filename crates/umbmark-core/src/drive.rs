@@ -15,6 +15,8 @@ macro_rules! every_drive {
             Tricycle(tricycle::TricycleDrive),
             Mecanum(mecanum::MecanumDrive),
             Omni3(omni3::Omni3Drive),
+            Omni4(omni4::Omni4Drive),
+            DeadWheels(dead_wheels::DeadWheelsDrive),
         }
     };
 }
@@ -159,6 +161,15 @@ macro_rules! drives {
             pub fn rollers(&self) -> Option<Rollers> {
                 match self {
                     $(Drive::$kind(drive) => drive.rollers(),)+
+                }
+            }
+
+            /// How wheels with rollers stand, where laws have to know: of four omni wheels, cosine and sine of twice the direction of the first
+            /// from straight ahead; of tracking wheels, how far the one across stands ahead, over half the distance of the other two, and zero;
+            /// zeros of other drives.
+            pub fn wheel_layout(&self) -> [f64; 2] {
+                match self {
+                    $(Drive::$kind(drive) => drive.wheel_layout(),)+
                 }
             }
 
@@ -421,6 +432,7 @@ impl Robot {
             wheel_radius: [0.5 * self.drive.wheel_diameter_left(), 0.5 * self.drive.wheel_diameter_right()],
             metres_per_tick: self.metres_per_tick(),
             axle_distance: self.drive.axle_distance(),
+            wheel_layout: self.drive.wheel_layout(),
         }
     }
 

@@ -3,6 +3,7 @@
 mod aside;
 pub mod dead_reckoning;
 mod gyro;
+mod lost_time;
 mod place;
 mod reference_track;
 pub mod resolution;
@@ -76,6 +77,9 @@ pub struct TickLog {
     /// By which share the run took longer by the reference's clock than by that of the rows, where both wrote down when it began and ended; else 0.
     #[serde(default)]
     pub clock_excess: f64,
+    /// That share in the step before each row, where the motion shows that time was lost unevenly; else empty.
+    #[serde(default)]
+    pub clock_excess_along: Vec<f64>,
     /// Where START was found.
     #[serde(default)]
     pub start: Start,

@@ -119,7 +119,10 @@ fn sideways() -> String {
         .filter(|kind| kind.moves_sideways())
         .map(|kind| format!("drive = \"{}\"", kind.name()))
         .collect();
-    format!("{} can", names.join(" or "))
+    match names.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last} can", others.join(", ")),
+        _ => format!("{} can", names.concat()),
+    }
 }
 
 /// Position of the wheels within a tick at START and at every stop.

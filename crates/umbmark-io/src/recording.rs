@@ -24,6 +24,8 @@ const AFTER_RESET: f64 = 2.0;
 const BEFORE_RESET: f64 = 20.0;
 /// The steps around a reset say what was turned between the two rows if these are no more than so many mean periods apart.
 const SHORT: f64 = 5.0;
+/// Clocks that differ by more than this share are told, and where they differ is looked for.
+pub(crate) const CLOCK_EXCESS: f64 = 0.03;
 
 /// The rows of one log, before anything is mended.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,6 +147,9 @@ impl Recording {
         let clock_excess = self.clock_excess;
         let counts = TickLog { left, right, rollers, clock_excess, mended, ..TickLog::default() };
         let mut log = TickLog { time, reference, relative, headings_only, ..counts };
+        if let Some(robot) = robot.filter(|_| log.clock_excess.abs() > CLOCK_EXCESS) {
+            log.find_lost_time(robot);
+        }
         warnings.extend(robot.and_then(|robot| slow_clock(&log, robot)).map(|told| format!("{}: {told}", self.file)));
         if let Some(apart) = apart {
             let outside = place(&mut log, &apart.time, &apart.poses);

@@ -15,6 +15,10 @@ pub struct Nominal {
     /// Distance of the steered wheel from the axle \[m\]; for a drive without one, that of a wheel which would steer it as far before the
     /// axle as its wheels are apart.
     pub axle_distance: f64,
+    /// How wheels with rollers stand, where laws have to know: of four omni wheels, cosine and sine of twice the direction of the first
+    /// from straight ahead; of tracking wheels, how far the one across stands ahead, over half the distance of the other two, and zero;
+    /// zeros of other drives.
+    pub wheel_layout: [f64; 2],
 }
 
 /// Where a run stands in its session.
@@ -106,6 +110,8 @@ pub struct Context<T = f64> {
     pub wheelbase: f64,
     /// Distance of the steered wheel from the axle \[m\]; see [`Nominal::axle_distance`].
     pub axle_distance: f64,
+    /// How wheels with rollers stand; see [`Nominal::wheel_layout`].
+    pub wheel_layout: [f64; 2],
     /// Number of the run in the session, from 0.
     pub run: f64,
     /// Sense of the run: +1 counter-clockwise, -1 clockwise, 0 where it has none.
@@ -146,6 +152,7 @@ impl Context {
             truck: self.truck,
             wheelbase: self.wheelbase,
             axle_distance: self.axle_distance,
+            wheel_layout: self.wheel_layout,
             run: self.run,
             direction: self.direction,
             clock_excess: self.clock_excess,
@@ -272,6 +279,7 @@ impl Progress {
             recorded,
             wheelbase: nominal.wheelbase,
             axle_distance: nominal.axle_distance,
+            wheel_layout: nominal.wheel_layout,
             ..Context::default()
         };
         Progress {
@@ -288,8 +296,14 @@ impl Progress {
 
     /// The same run, which took longer by this share by the reference's clock than by the log's.
     pub fn with_clock_excess(mut self, excess: f64) -> Progress {
-        self.now.clock_excess = excess;
+        self.set_clock_excess(excess);
         self
+    }
+
+    /// That share from the next piece on.
+    #[inline]
+    pub fn set_clock_excess(&mut self, excess: f64) {
+        self.now.clock_excess = excess;
     }
 
     /// The next piece: its believed wheel travel \[m\], how long it takes \[s\], and the speeds of the left and the right
@@ -407,6 +421,7 @@ mod tests {
             wheel_radius: [0.075; 2],
             metres_per_tick: WheelTravel { left: tick, right: tick },
             axle_distance: 0.34,
+            wheel_layout: [0.0; 2],
         }
     }
 

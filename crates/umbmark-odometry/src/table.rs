@@ -238,7 +238,7 @@ impl<'t> Table<'t> {
         let wheel_radius = [rest.positive()?, rest.positive()?];
         let metres_per_tick = WheelTravel { left: rest.positive()?, right: rest.positive()? };
         let axle_distance = rest.positive()?;
-        let nominal = Nominal { wheelbase, wheel_radius, metres_per_tick, axle_distance };
+        let nominal = Nominal { wheelbase, wheel_radius, metres_per_tick, axle_distance, wheel_layout: [0.0; 2] };
         let (per_count, zero) = ([rest.any()?, rest.any()?], rest.any()?);
         let steering = Steering { per_count, zero, axle_distance };
         let gearing = match drive {

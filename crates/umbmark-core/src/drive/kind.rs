@@ -41,6 +41,7 @@ struct Facts {
     steers: bool,
     drives_front_wheel: bool,
     has_trucks: bool,
+    is_driven: bool,
     from_values: fn(&[f64]) -> Result<Drive, DriveError>,
 }
 
@@ -59,6 +60,7 @@ impl Facts {
             steers: D::STEERS,
             drives_front_wheel: D::DRIVES_FRONT_WHEEL,
             has_trucks: D::HAS_TRUCKS,
+            is_driven: D::IS_DRIVEN,
             from_values: |values| D::from_values(values).map(Into::into),
         }
     }
@@ -140,6 +142,11 @@ impl DriveKind {
         self.facts().has_trucks
     }
 
+    /// Whether the wheels that are counted are those that drive the robot; tracking wheels only roll along.
+    pub fn is_driven(self) -> bool {
+        self.facts().is_driven
+    }
+
     /// Whether it may have an effect that does not name it.
     pub(crate) fn adopts(self, effect: &str) -> bool {
         self.facts().effects.contains(&effect)
@@ -159,7 +166,10 @@ impl DriveKind {
 
 /// Some kinds of drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DriveKinds(u8);
+pub struct DriveKinds(u32);
+
+// A bit for each kind.
+const _: () = assert!(DriveKind::ALL.len() < u32::BITS as usize);
 
 impl DriveKinds {
     /// Every drive.

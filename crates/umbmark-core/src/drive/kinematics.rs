@@ -30,6 +30,9 @@ pub(super) trait Kinematics: Sized {
     /// What the counters of its wheels with rollers are called in files, which stand there in place of the two; none without such.
     const WHEELS: &'static [&'static str] = &[];
 
+    /// Whether the wheels that are counted are those that drive the robot.
+    const IS_DRIVEN: bool = true;
+
     /// The numbers of its nominal robot beside those of the encoder.
     const PARAMETERS: &'static [Parameter];
 
@@ -84,6 +87,11 @@ pub(super) trait Kinematics: Sized {
     /// See [`Drive::rollers`](super::Drive::rollers).
     fn rollers(&self) -> Option<Rollers> {
         None
+    }
+
+    /// See [`Drive::wheel_layout`](super::Drive::wheel_layout).
+    fn wheel_layout(&self) -> [f64; 2] {
+        [0.0; 2]
     }
 
     /// Its axle, real or virtual.

@@ -40,8 +40,11 @@ impl Effect for Bumps {
                  for wheel radii of 66 to 75 mm",
     };
 
-    const DRIVES: DriveKinds =
-        DriveKinds::of(DriveKind::Differential).and(DriveKind::Synchro).and(DriveKind::Mecanum).and(DriveKind::Omni3);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential)
+        .and(DriveKind::Synchro)
+        .and(DriveKind::Mecanum)
+        .and(DriveKind::Omni3)
+        .and(DriveKind::Omni4);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let lost = lost_travel(p[1], p[2], p[3]);

@@ -20,12 +20,12 @@ impl Effect for LateralScale {
         equation: "left ← k · left",
         physics: "Sideways, a mecanum wheel rolls on its rollers alone: they turn with friction and slip along their axes.",
         signature: "Sideways legs are too short (k < 1), legs ahead are not. A path without sideways motion shows nothing.",
-        confused_with: &["rear_diameter_ratio"],
+        confused_with: &["rear_diameter_ratio", "omni_pair_ratio"],
         separated_by: "a leg ahead and a leg sideways, measured by tape",
         source: "kinematics; the lateral multiplier of mecanum drives in Road Runner",
     };
 
-    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Mecanum).and(DriveKind::Omni3);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Mecanum).and(DriveKind::Omni3).and(DriveKind::Omni4);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let short = if p[0] < 1.0 { "long" } else { "short" };

@@ -24,17 +24,19 @@ impl Effect for LostCycles {
             (-1.0, 3.0),
             "share of the time missing from the log that is missing from its ways: 0 where counters counted on, 1 where each row holds a speed",
         )],
-        equation: "(ahead, left, Δθ) ← (1 + p (T/t - 1)) (ahead, left, Δθ),  T and t the duration of the run by the reference's clock and by the log's",
+        equation: "(ahead, left, Δθ) ← (1 + p (T/t - 1)) (ahead, left, Δθ),  T and t the duration of the move by the reference's clock and by the log's; of the run, \
+                   where its moves do not show theirs",
         physics: "A row holds what the wheels did in a cycle of fixed length, from their speed. Where messages are lost, or cycles take longer, what \
                   the wheels did in the meantime stands nowhere.",
-        signature: "Every way and every turn of a run is too short by one share, that of the time missing from its log, which differs from run to \
-                    run and from path to path. Runs of one path hardly tell it from the size of the wheels.",
+        signature: "Every way and every turn is too short by the share of the time missing from its log, which differs from run to run, from path to \
+                    path and from move to move. Runs of one path hardly tell it from the size of the wheels where they lose time evenly.",
         confused_with: &["roller_scale"],
         separated_by: "runs of which the log lost different shares; the counts of a counter that counts on",
         source: "found in the logs of a mecanum robot of OptiOdom (Sousa et al., 2022)",
     };
 
-    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Mecanum).and(DriveKind::Omni3);
+    const DRIVES: DriveKinds =
+        DriveKinds::of(DriveKind::Mecanum).and(DriveKind::Omni3).and(DriveKind::Omni4).and(DriveKind::DeadWheels);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

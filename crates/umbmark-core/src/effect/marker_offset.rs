@@ -39,7 +39,7 @@ impl Effect for MarkerOffset {
                   not show there.",
         signature: "In every turn the marker moves on a circle whose radius is the offset. It is back when the heading is that of \
                     START, so return poses do not show it; stops at the corners do.",
-        confused_with: &[],
+        confused_with: &["across_wheel_offset"],
         separated_by: "one turn on the spot: the marker's path is the circle",
         source: "rigid-body geometry; 5 mm is assumed",
     };

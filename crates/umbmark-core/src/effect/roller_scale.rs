@@ -25,7 +25,8 @@ impl Effect for RollerScale {
         source: "kinematics",
     };
 
-    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Mecanum).and(DriveKind::Omni3);
+    const DRIVES: DriveKinds =
+        DriveKinds::of(DriveKind::Mecanum).and(DriveKind::Omni3).and(DriveKind::Omni4).and(DriveKind::DeadWheels);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let short = if p[0] < 1.0 { "long" } else { "short" };

@@ -36,6 +36,13 @@ pub(super) fn share<T: Real>(ratio: T) -> T {
     (ratio - 1.0) / (ratio + 1.0)
 }
 
+/// How much the sizes of four omni wheels differ across the base: that of the two wheels of this ratio, which stand farthest apart, over the sine or cosine
+/// of their direction.
+#[inline(always)]
+pub(super) fn share_of_omni_wheels<T: Real>(ratio: T, at: &Context<T>) -> T {
+    share(ratio) * (1.0 / libm::sqrt(0.5 + 0.5 * libm::fabs(at.wheel_layout[0])))
+}
+
 /// That some wheels of this ratio to others are larger or smaller, and both diameters.
 pub(super) fn differ(whose: &str, than: &str, ratio: f64, robot: &Robot) -> String {
     let (off, mean) = (share(ratio), robot.drive.wheel_diameter_left());

@@ -160,7 +160,12 @@ pub(crate) fn sideways_log(truth: &Drive, robot: &Robot) -> TickLog {
 
 /// A robot of usual numbers that truly is `truth` must be where effects with these values put it, all along.
 pub(super) fn assert_rolls(truth: Drive, settings: &[Setting]) {
-    let robot = Robot { drive: truth.kind().usual(), ..Robot::labmate() };
+    assert_rolls_as(truth.kind().usual(), truth, settings);
+}
+
+/// The same of a robot that believes to be `nominal`.
+pub(super) fn assert_rolls_as(nominal: Drive, truth: Drive, settings: &[Setting]) {
+    let robot = Robot { drive: nominal, ..Robot::labmate() };
     let log = sideways_log(&truth, &robot);
     let track = Track::from_log(&log, &robot).unwrap();
     let mut model = Model::new(&robot);
@@ -443,6 +448,7 @@ fn contexts() -> [Context; 2] {
         truck: 1.0,
         wheelbase: 0.34,
         axle_distance: 0.5,
+        wheel_layout: [0.6, 0.8],
         run: 2.0,
         direction: 1.0,
         clock_excess: 0.03,

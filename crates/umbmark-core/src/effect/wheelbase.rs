@@ -27,6 +27,7 @@ impl Effect for Wheelbase {
             "caster_kick",
             "centripetal_load",
             "roller_scale",
+            "sideways_turn_slip",
         ],
         separated_by: "turns on the spot, together with one straight leg measured by tape",
         source: "Borenstein & Feng (1995), section 2",

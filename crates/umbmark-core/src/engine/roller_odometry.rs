@@ -162,10 +162,10 @@ mod tests {
 
     #[test]
     fn whole_counts_in_one_reading_are_one_arc() {
-        for kind in [DriveKind::Mecanum, DriveKind::Omni3] {
+        for kind in [DriveKind::Mecanum, DriveKind::Omni3, DriveKind::Omni4, DriveKind::DeadWheels] {
             let rollers = kind.usual().rollers().unwrap();
             let odometry = RollerOdometry::new(&rollers, PER_REVOLUTION);
-            let counts = [1200, -700, 350, if kind == DriveKind::Mecanum { 41 } else { 0 }];
+            let counts = [1200, -700, 350, if rollers.wheels().len() == 3 { 0 } else { 41 }];
             let line = RollerLine { start: [0; 4], travel: counts.map(|count| count * UNITS_PER_TICK) };
             let metres = rollers.metres_per_count(PER_REVOLUTION);
             let ways: Vec<f64> = metres.iter().zip(counts).map(|(metres, count)| metres * count as f64).collect();
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn a_move_at_once_is_what_its_readings_report() {
         let mut chance = Stream::new(7, 7, 7);
-        for kind in [DriveKind::Mecanum, DriveKind::Omni3] {
+        for kind in [DriveKind::Mecanum, DriveKind::Omni3, DriveKind::Omni4, DriveKind::DeadWheels] {
             let rollers = kind.usual().rollers().unwrap();
             let odometry = RollerOdometry::new(&rollers, PER_REVOLUTION);
             let (mut sum, mut most, mut count) = (0.0, 0.0_f64, 0.0);

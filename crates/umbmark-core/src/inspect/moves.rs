@@ -333,7 +333,7 @@ mod tests {
     #[test]
     fn shapes_of_robots_that_move_sideways_are_told_too() {
         use crate::path::{DIAGONAL_SQUARE, FIXED_CIRCLE, FIXED_SQUARE, SIDEWAYS_SQUARE, SLIDE, SQUARE};
-        for kind in [DriveKind::Mecanum, DriveKind::Omni3] {
+        for kind in [DriveKind::Mecanum, DriveKind::Omni3, DriveKind::Omni4, DriveKind::DeadWheels] {
             let robot = Robot { drive: kind.usual(), ..Robot::labmate() };
             for direction in Direction::BOTH {
                 let told = |shape| found_of(&robot, shape, &[2.0], direction);

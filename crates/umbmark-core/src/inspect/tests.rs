@@ -282,7 +282,7 @@ fn what_returns_can_determine_depends_on_path_directions_and_headings() {
 fn what_returns_of_a_base_on_rollers_can_determine_depends_on_how_it_goes_round() {
     use crate::drive::DriveKind;
     use crate::path::{FIXED_SQUARE, SIDEWAYS_SQUARE, SLIDE, SQUARE};
-    for kind in [DriveKind::Mecanum, DriveKind::Omni3] {
+    for kind in [DriveKind::Mecanum, DriveKind::Omni3, DriveKind::Omni4, DriveKind::DeadWheels] {
         let robot = Robot { drive: kind.usual(), ..Robot::labmate() };
         for (shape, expected) in [
             (&SQUARE, [true, true, false]),

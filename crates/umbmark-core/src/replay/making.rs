@@ -51,6 +51,9 @@ impl Track {
                 let speed = 0.5 * (paces[before] + paces[sample]);
                 aside = Aside { way: to - from, disagreement: apart - were, speed };
             }
+            if let Some(excess) = log.clock_excess_along.get(sample) {
+                progress.set_clock_excess(*excess);
+            }
             track.push(travel, progress.piece_aside(&travel, aside, duration, speeds[before], speeds[sample]));
             (left, right) = (*l, *r);
             track.duration = log.time[sample] - log.time[0];

@@ -168,8 +168,9 @@ mod tests {
 
     const SAMPLED: Odometry = Odometry::Sampled { rate: 100.0, update: Update::Arc };
 
-    fn robots() -> [Robot; 2] {
-        [DriveKind::Mecanum, DriveKind::Omni3].map(|kind| Robot { drive: kind.usual(), ..Robot::labmate() })
+    fn robots() -> [Robot; 4] {
+        [DriveKind::Mecanum, DriveKind::Omni3, DriveKind::Omni4, DriveKind::DeadWheels]
+            .map(|kind| Robot { drive: kind.usual(), ..Robot::labmate() })
     }
 
     fn path(shape: &'static Shape, side: f64) -> Path {
@@ -347,8 +348,8 @@ mod tests {
     #[test]
     fn a_robot_that_cannot_move_sideways_is_refused_and_told_which_can() {
         let error = Simulator::new(&Robot::labmate(), &path(&FIXED_SQUARE, 1.0), Odometry::EveryTick, Phase::Edge);
-        let said = "a robot with drive = \"differential\" cannot move sideways, as it does in move 2 of the path; drive = \"mecanum\" or \
-                    drive = \"omni3\" can";
+        let said = "a robot with drive = \"differential\" cannot move sideways, as it does in move 2 of the path; drive = \"mecanum\", \
+                    drive = \"omni3\", drive = \"omni4\" or drive = \"dead_wheels\" can";
         assert_eq!(error.unwrap_err().to_string(), said);
         let mut fine = robots()[0].clone();
         fine.encoder = crate::drive::Encoder::new(1e9, None, None).unwrap();

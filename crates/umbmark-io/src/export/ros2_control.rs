@@ -28,7 +28,7 @@ fn write(export: &Export) -> Result<Written, ExportError> {
         ("tricycle_controller", of_front_wheel(export, &mut notes)?)
     } else if kind.steers() {
         ("ackermann_steering_controller", of_steering(export, &mut notes)?)
-    } else if let Some(rollers) = export.corrected()?.drive.rollers() {
+    } else if let Some(rollers) = export.corrected()?.drive.rollers().filter(|_| kind.is_driven()) {
         one_radius(&rollers, &mut notes);
         if rollers.wheels().iter().all(|wheel| wheel.roller == 0.0) {
             ("omni_wheel_drive_controller", of_omni_wheels(export, &rollers, &mut notes)?)

@@ -133,6 +133,17 @@ fn bases_on_rollers_get_the_numbers_by_which_their_controllers_reckon_the_same_m
     }
     assert!(notes.iter().any(|note| note.contains("one radius for all wheels")), "{notes:?}");
     assert!(notes.iter().any(|note| note.contains("anti-clockwise round the base")), "{notes:?}");
+
+    let four = Robot { drive: DriveKind::Omni4.usual().with("wheel_offset_rad", 0.3).unwrap(), ..Robot::labmate() };
+    let model = model_of(&four, &[("omni_side_ratio", "ratio", 1.01), ("wheelbase", "e_b", 1.02)]);
+    let Written { text, .. } = written("ros2_control", &Export { noise: Some(noise), ..Export::of(&model) });
+    let (offset, arm) = (value(&text, "wheel_offset", ": "), value(&text, "robot_radius", ": "));
+    let rollers = four.drive.with("wheel_distance_m", 0.2 * 1.02).unwrap().rollers().unwrap();
+    for (k, way) in rollers.ways_of(&motion).iter().enumerate() {
+        let angle = offset + k as f64 * std::f64::consts::FRAC_PI_2;
+        let expected = motion.forward * angle.sin() - motion.sideways * angle.cos() - arm * motion.rotation;
+        assert!((way - expected).abs() < 1e-9, "{way} {expected}");
+    }
 }
 
 /// Oracle: sums over one second of a filter that integrates speeds with that variance, by hand.

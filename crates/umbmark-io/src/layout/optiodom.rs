@@ -24,7 +24,7 @@ use crate::csv_text::CsvText;
 use crate::error::{At, DatasetError, LineProblem};
 use crate::label::Named;
 use crate::probe::{Probe, name_of, stem};
-use crate::recording::Recording;
+use crate::recording::{CLOCK_EXCESS, Recording};
 use crate::save::{Existing, put};
 use crate::sheet::Rows;
 use crate::source::Source;
@@ -48,8 +48,6 @@ const METADATA: &str = "_metadata.csv";
 const TRICYCLE: &str = "tricyc";
 const MECANUM: &str = "omni4";
 const THREE_WHEELS: &str = "omni3";
-/// Clocks that differ by more than this share are told.
-const CLOCK_EXCESS: f64 = 0.03;
 /// Whether each wheel of a mecanum base counts down ahead.
 const BACKWARD: [bool; 4] = [false, true, false, true];
 /// Counts a revolution in which steering angles, radians in the files, are kept.

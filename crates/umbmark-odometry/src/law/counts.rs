@@ -108,6 +108,7 @@ mod tests {
                 wheel_radius: [0.075; 2],
                 metres_per_tick: WheelTravel { left: 1e-4, right: 1e-4 },
                 axle_distance: 0.34,
+                wheel_layout: [0.0; 2],
             };
             let mut progress = Progress::new(&nominal, &Place::default(), true);
             let (mut law, mut exact) = ([0.0; 2], [0.0; 2]);

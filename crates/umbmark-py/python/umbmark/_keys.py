@@ -15,6 +15,8 @@ Drive: TypeAlias = Literal[
     "tricycle",
     "mecanum",
     "omni3",
+    "omni4",
+    "dead_wheels",
 ]
 Shape: TypeAlias = Literal[
     "square",
@@ -63,8 +65,15 @@ EffectName: TypeAlias = Literal[
     "axle_diameter_ratio",
     "front_diameter_ratio",
     "rear_diameter_ratio",
+    "omni_side_ratio",
+    "omni_axle_ratio",
+    "omni_pair_ratio",
+    "along_diameter_ratio",
+    "across_diameter_ratio",
+    "across_wheel_offset",
     "roller_scale",
     "lateral_scale",
+    "sideways_turn_slip",
     "rear_truck",
     "link_length",
     "rotary_zero_difference",
@@ -152,6 +161,8 @@ class RobotKeys(TypedDict, total=False):
     wheel_diameter_3_m: float | None
     wheel_diameter_4_m: float | None
     wheel_distance_m: float | None
+    wheel_offset_rad: float | None
+    across_wheel_ahead_m: float | None
 
 
 class MotionKeys(TypedDict, total=False):
