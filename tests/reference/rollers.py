@@ -131,7 +131,7 @@ def sizes(drive: str, first: float, cause: str | None, size: float) -> np.ndarra
             share(1 + own.get("omni_axle_ratio", 0)) / np.abs(along).max(),
             share(1 + own.get("omni_pair_ratio", 0)),
         )
-        return 1 - s * across + a * along + p * np.array([1, -1, 1, -1])
+        return np.asarray(1 - s * across + a * along + p * np.array([1, -1, 1, -1]))
     rear = 1 + own.get("rear_diameter_ratio", 0)
     front = 3 / (2 + rear)
     right = 2 / (1 + first)

@@ -61,7 +61,8 @@ def filtered(shown: Callable[[Array], Array], when_s: Array, filter_s: float) ->
         return shown(when_s)
     ages = (np.arange(200) + 0.5) * 0.05
     weights = np.exp(-ages) / np.exp(-ages).sum()
-    return sum(w * shown(when_s - age * filter_s) for w, age in zip(weights, ages, strict=True))
+    before = np.stack([shown(when_s - age * filter_s) for age in ages])
+    return np.asarray(np.einsum("a,apk->pk", weights, before))
 
 
 def with_frame_moved(pose: Array, taken_s: Array, jump: Jump, pivot: Array) -> Array:
