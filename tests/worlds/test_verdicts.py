@@ -85,6 +85,15 @@ def test_a_delay_is_found_with_its_sign(delay_s: float) -> None:
     assert said["delay"]["within"], said["delay"]
 
 
+def test_a_filter_of_the_reference_is_found_and_the_robot_keeps_its_size() -> None:
+    # Taken for wheels that follow late, it moves E_b and E_s by more than a per cent.
+    said = found("low_pass", 2, "filter_s=0.3")
+    assert (said["verdict"], said["added_wrong"]) == ("explained", [])
+    assert "reference_filter" in said["added_right"]
+    assert said["delay"]["within"], said["delay"]
+    assert all(abs(one["standard_errors"]) < 4 for one in said["ratios"].values()), said["ratios"]
+
+
 @pytest.mark.parametrize("world", ["jumps", "carried", "spinning"])
 def test_jumps_are_named_and_the_robot_is_not_blamed(world: str) -> None:
     said = found(world, 3)
