@@ -250,5 +250,6 @@ class EffectKeys(TypedDict, total=False):
     centre_x_m: Drawn
     centre_y_m: Drawn
     headings: Drawn
+    ahead_m: Drawn
     along_m_per_m: Drawn
     diagonal_m_per_m: Drawn
