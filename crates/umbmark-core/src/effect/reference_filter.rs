@@ -12,8 +12,9 @@ pub struct ReferenceFilter;
 
 pub(super) static EFFECT: Entry = Entry::of::<ReferenceFilter>().filter::<ReferenceFilter>();
 
-/// Shares that a filter can have; with what is left for the error of an estimate.
-const SHARES: Range<f64> = 0.25..1.25;
+/// Shares that a filter can have, with what is left for the error of an estimate: a delay beside it may hold a part of its mean lag, and more than all is
+/// not filtered.
+const SHARES: Range<f64> = 0.25..1.15;
 
 impl Effect for ReferenceFilter {
     const ABOUT: About = About {
