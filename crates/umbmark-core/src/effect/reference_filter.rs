@@ -43,7 +43,7 @@ impl Effect for ReferenceFilter {
         physics: "Motion capture, receivers of satellites and filters of maps smooth what they show: each pose holds something of those \
                   before it. At 1 m/s, a time constant of 100 ms leaves the pose 100 mm behind, and rounds every corner.",
         signature: "The measured pose is behind by v τ along the course, as by a delay; beyond that, tracks shrink to the inside of every \
-                    curve, by τ² times the acceleration. At rest it is correct.",
+                    curve, by τ²/2 times the acceleration. At rest it is correct.",
         confused_with: &["reference_delay", "wheel_lag"],
         separated_by: "a quick change between two curves: a delay leaves the shape of the track, a filter rounds it; the settings of the \
                        reference",

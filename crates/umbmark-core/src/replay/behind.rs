@@ -27,7 +27,11 @@ impl<T: Evaluate> Behind<T> {
     fn shares(&mut self, duration: f64) -> (T, T) {
         if duration != self.last.0 {
             let left = (-(self.filter.time_constant.recip() * duration)).exponential();
-            let added = self.filter.time_constant * (1.0 / duration) * (-left + 1.0);
+            // Of what takes no time, nothing is followed yet.
+            let added = match duration {
+                0.0 => T::from(1.0),
+                _ => self.filter.time_constant * (1.0 / duration) * (-left + 1.0),
+            };
             self.last = (duration, left, added);
         }
         (self.last.1, self.last.2)
@@ -67,5 +71,22 @@ impl<T: Evaluate> Behind<T> {
     pub fn seen(&self, pose: &Pose2<T>) -> Pose2<T> {
         let [x, y, heading] = self.lag.map(|lag| lag * self.filter.share);
         Pose2 { x: pose.x - x, y: pose.y - y, heading: pose.heading - heading }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_a_way_that_takes_no_time_nothing_is_followed_yet() {
+        let mut behind = Behind::new(Filter { share: 1.0, time_constant: 0.1 });
+        let at = |time: f64, duration: f64| Context { time, duration, ..Context::default() };
+        let poses = [0.0, 0.2, 0.5].map(|x| Pose2::new(x, 0.0, 0.0));
+        behind.goes(&at(1.0, 1.0), (&poses[0], &poses[1]), 2.0);
+        let before = behind.seen(&poses[1]);
+        behind.goes(&at(2.0, 0.0), (&poses[1], &poses[2]), 2.0);
+        let after = behind.seen(&poses[2]);
+        assert!((after.x - before.x).abs() < 1e-15 && before.x < 0.2, "{before:?} {after:?}");
     }
 }
