@@ -47,7 +47,7 @@ pub fn what_repeats(
 ) -> Option<Repeated> {
     let chain = model.chain();
     let steps: Vec<Vec<TrackStep>> = observed.runs.par_iter().map(|run| steps(run, &chain)).collect();
-    let laws = Laws::of(&steps);
+    let laws = Laws::of(&steps, observed.robot.drive.wheelbase());
     let runs = observed.runs.par_iter().zip(own).zip(&steps).enumerate();
     let sums = runs.flat_map_iter(|(index, ((run, own), steps))| of_run(index, run, own, &laws, steps, noise));
     let sums: Vec<Sums> = sums.collect();
@@ -151,7 +151,7 @@ mod tests {
         let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
         let chain = model.chain();
         let steps: Vec<Vec<TrackStep>> = observed.runs.iter().map(|run| steps(run, &chain)).collect();
-        let laws = Laws::of(&steps);
+        let laws = Laws::of(&steps, observed.robot.drive.wheelbase());
         for (words, per, motion, target, formula) in [
             ("a wave of 2 times the heading", "metre", 2, Target::HeadingPerMetre, "cos(2 * heading)"),
             ("the square of the speed", "metre", 1, Target::SidewaysPerMetre, "speed^2"),
@@ -201,7 +201,7 @@ mod tests {
         let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
         let chain = model.chain();
         let steps: Vec<Vec<TrackStep>> = observed.runs.iter().map(|run| steps(run, &chain)).collect();
-        let laws = Laws::of(&steps);
+        let laws = Laws::of(&steps, observed.robot.drive.wheelbase());
         let (mut written, mut lost) = (0, Vec::new());
         for term in 0..laws.terms.len() {
             let terms: Vec<usize> =

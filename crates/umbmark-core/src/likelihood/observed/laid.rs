@@ -74,9 +74,14 @@ impl ObservedRun {
             }));
         }
         self.seen = seen.into();
-        if self.linear && !self.relative {
+        if self.is_linearised() {
             self.linearise(chain);
         }
+    }
+
+    /// Whether its residuals lack the terms of second order in heading errors, and so are those of the model about which it is laid only.
+    pub(in crate::likelihood) fn is_linearised(&self) -> bool {
+        self.linear && !self.relative
     }
 
     /// Removes from the residuals the terms of second order in heading errors, and what lies beside the arcs of the odometry ([`Uneven`]).

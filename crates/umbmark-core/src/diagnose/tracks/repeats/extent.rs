@@ -16,6 +16,8 @@ pub struct Extent {
     pub turn_acceleration: f64,
     pub low: [f64; 2],
     pub high: [f64; 2],
+    /// Nominal distance of the wheels \[m\].
+    pub wheelbase: f64,
     /// How far the runs reach against each of eight [directions](direction) \[m\].
     pub edges: [f64; 8],
 }
@@ -32,7 +34,7 @@ pub fn direction(k: usize) -> f64 {
 }
 
 impl Extent {
-    pub fn of(steps: &[Vec<TrackStep>]) -> Extent {
+    pub fn of(steps: &[Vec<TrackStep>], wheelbase: f64) -> Extent {
         let most = |of: fn(&TrackStep) -> f64| steps.iter().flatten().map(of).fold(1e-9, f64::max);
         let least = |of: fn(&TrackStep) -> f64| steps.iter().flatten().map(of).fold(0.0, f64::min);
         let sum = |of: fn(&TrackStep) -> f64| steps.iter().flatten().map(of).sum::<f64>();
@@ -45,6 +47,7 @@ impl Extent {
             turn_rate: most(|s| s.turn_rate.abs()),
             acceleration: most(|s| s.acceleration.abs()),
             turn_acceleration: most(|s| s.turn_acceleration.abs()),
+            wheelbase,
             edges: std::array::from_fn(|k| {
                 steps.iter().flatten().map(|s| along(s, direction(k))).fold(f64::INFINITY, f64::min)
             }),

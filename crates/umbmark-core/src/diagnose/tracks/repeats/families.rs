@@ -17,6 +17,9 @@ const DECAYS: [f64; 7] = [3.0, 6.0, 12.0, 20.0, 35.0, 60.0, 100.0];
 const NEAR: [f64; 5] = [0.1, 0.2, 0.35, 0.6, 1.0];
 /// Sizes of what a robot does, as shares of the largest.
 const SHARES: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+/// Where a floor may change, as shares of the extent of the room along a direction, and within which way it does \[m\].
+const BORDERS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
+const BORDER: f64 = 0.05;
 /// Minimum distance between humps on the floor \[m\], and their maximum number.
 const HUMPS: (f64, usize) = (0.5, 80);
 
@@ -100,6 +103,7 @@ impl Laws {
             }
         }
         self.of_motion(extent);
+        self.of_wheels(extent.wheelbase);
         self.of_place(extent);
     }
 
@@ -215,16 +219,41 @@ impl Laws {
         }
     }
 
+    /// A wheel that rolls further, or less far, backward than forward.
+    fn of_wheels(&mut self, wheelbase: f64) {
+        for (sign, side, name) in [("+", -1.0, "left"), ("-", 1.0, "right")] {
+            self.add_shaped(
+                format!("how fast the {name} wheel rolls backward"),
+                (format!("max(-speed {sign} turn_rate * c, 0)"), vec![(SHAPE, 0.5 * wheelbase)]),
+                &[Per::Second],
+                move |s, by| (-s.speed - side * s.turn_rate * by[0]).max(0.0),
+            );
+        }
+    }
+
     fn of_place(&mut self, extent: &Extent) {
-        use Per::{Metre, Second};
+        use Per::{Metre, Radian, Second};
         let ([x0, y0], [x1, y1]) = (extent.low, extent.high);
         let (wide, deep) = (x1 - x0, y1 - y0);
         if wide.max(deep) < HUMPS.0 {
             return;
         }
-        self.pair("the place in the room, along a line", ["x", "y"], &[Metre, Second], |s| [s.middle.x, s.middle.y]);
+        self.pair("the place in the room, along a line", ["x", "y"], &[Metre, Second, Radian], |s| {
+            [s.middle.x, s.middle.y]
+        });
         for k in 0..4 {
             let (from, to) = (extent.edges[k], -extent.edges[k + 4]);
+            for d in BORDERS.map(|share| from + share * (to - from)) {
+                self.add_shaped(
+                    "the side of a line on the floor where the robot is".into(),
+                    (
+                        format!("(1 + tanh((x * cos(h) + y * sin(h) - d) / {BORDER})) / 2"),
+                        vec![("d", d), ("h", direction(k))],
+                    ),
+                    &[Metre, Radian],
+                    |s, by| 0.5 * (1.0 + libm::tanh((along(s, by[1]) - by[0]) / BORDER)),
+                );
+            }
             for d in [from, 0.5 * (from + to), to] {
                 self.add_shaped(
                     "the square of the distance from a line in the room".into(),

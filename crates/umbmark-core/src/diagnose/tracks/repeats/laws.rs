@@ -50,9 +50,9 @@ pub struct Laws {
 }
 
 impl Laws {
-    /// Those of the steps of some runs.
-    pub fn of(steps: &[Vec<TrackStep>]) -> Laws {
-        let extent = Extent::of(steps);
+    /// Those of the steps of some runs, of a robot whose wheels are so far from each other \[m\].
+    pub fn of(steps: &[Vec<TrackStep>], wheelbase: f64) -> Laws {
+        let extent = Extent::of(steps, wheelbase);
         let mut laws = Laws { functions: Vec::new(), reverses: extent.back > BACK * extent.way, terms: Vec::new() };
         laws.fill(&extent);
         if laws.reverses {
