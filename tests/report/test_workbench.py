@@ -158,6 +158,7 @@ def test_the_tour_finds_the_hidden_effect_and_the_error_falls_to_what_learn_says
     page.accepted(3)
     assert page.story()[-1] == held_out(learnt["steps"])[-1] == "5.8 mm"
     page.click("learn")
+    page.wait("return document.querySelectorAll('#reached li').length > 1")
     page.wait("return document.querySelectorAll('#story button').length === 5")
     assert page.story() == held_out(learnt["steps"])
     # A step to go back to, and the way forward again.

@@ -180,7 +180,7 @@ impl Session {
     /// Runs `work` on the threads that were asked for: Ctrl-C stops it, and a bar of a hundred steps of `unit` shows how far it is.
     pub fn watched<R: Send>(&self, unit: &'static str, work: impl FnOnce(&Watch) -> R + Send) -> anyhow::Result<R> {
         let stop = self.catch_interrupt();
-        self.told(unit, |progress| work(&Watch { stop: &stop, progress }))
+        self.told(unit, |progress| work(&Watch::new(&stop, progress)))
     }
 
     /// Runs `work` on the threads that were asked for; a bar of a hundred steps of `unit` shows the share that it tells.

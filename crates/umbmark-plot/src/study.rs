@@ -152,7 +152,7 @@ impl Study {
         }
         self.once(&self.solution, || {
             let start = Model::new(self.data.nominal_robot().map_err(Absent::because)?);
-            let watch = Watch { stop: &self.stop, progress };
+            let watch = Watch::new(&self.stop, progress);
             let solution = solve(&self.data, &start, &self.options.diagnose, &watch).map_err(Absent::because)?;
             self.cut_short.fetch_or(solution.learnt.partial, Ordering::Relaxed);
             Ok(solution)
@@ -206,7 +206,7 @@ impl Study {
                 Some((_, model)) => model.clone(),
                 None => diagnose::first_model(&self.data).map_err(Absent::because)?,
             };
-            let watch = Watch { stop: &self.stop, progress: &|_| () };
+            let watch = Watch::new(&self.stop, &|_| ());
             let found = conditions(&self.data, &model, &self.options.diagnose, &watch);
             found.map_err(|why| Absent(format!("No conditions are compared: {why}.")))
         })

@@ -112,7 +112,7 @@ impl Watch {
     /// Does work of the core, which tells the share that is done in thousandths.
     pub fn work<T>(&self, work: impl FnOnce(&umbmark_core::watch::Watch) -> T) -> T {
         let progress = |share: f64| self.done.store((share * STEPS) as u64, Ordering::Relaxed);
-        work(&umbmark_core::watch::Watch { stop: &self.stop, progress: &progress })
+        work(&umbmark_core::watch::Watch::new(&self.stop, &progress))
     }
 
     /// Tells Python how far the work is and hears whether it should stop.

@@ -140,14 +140,20 @@ function choose(name) {
   if (name === "work") drive.draw();
 }
 
+/** What goes on: a job, or the runs that are made ready for fits, of which no share is known. */
+function working() {
+  by("job").hidden = !job.running && !bench?.preparing;
+  by("job-words").textContent = job.running ? (WORDS[job.kind] ?? job.kind) : "Making the runs ready for fits";
+  by("cancel").hidden = !job.running;
+  if (job.running) by("share").value = job.share;
+  else by("share").removeAttribute("value");
+}
+
 /** @param {any} told */
 async function take(told) {
   lost(false);
   const ended = job.running && !told.job.running;
   job = told.job;
-  by("job").hidden = !job.running;
-  by("job-words").textContent = WORDS[job.kind] ?? job.kind;
-  by("share").value = job.share;
   if (ended && job.error) fail(new Error(job.error));
   if (ended && job.kind === "report" && !job.error) report.replaceChildren(h("button", { type: "button", class: "main", id: "take-report", onclick: () => save("api/report.html", "report.html") }, "Save report.html"));
   if (ended && job.kind === "learn" && job.stopped && !job.error) say("Learn was cancelled; what it had found until then stands in the story.");
@@ -155,10 +161,12 @@ async function take(told) {
   if (told.bench !== undefined) bench = told.bench;
   if (told.key === "empty") bench = null;
   key = told.key;
+  working();
   empty.hidden = Boolean(bench);
   work.hidden = !bench;
   by("place").textContent = bench ? bench.place : "";
   document.title = bench ? `${bench.place.split("/").pop()} – umbmark workbench` : "umbmark workbench";
+  story.reached(job.running ? job.steps : []);
   if (!bench) { if (!placed) { placed = "none"; data.inspect(false); } return; }
   if (fresh || ended || told.bench !== undefined) await show();
 }
@@ -174,7 +182,7 @@ async function show() {
   }
   const { state } = bench;
   story.show(state);
-  model.show(bench, job.running);
+  model.show(bench, job.running || bench.preparing);
   drive.hide(state.hidden);
   const text = state.draft?.model ?? state.steps[state.at].model;
   if (text !== shown) {
@@ -208,7 +216,7 @@ async function look() {
     if (error instanceof Silent) lost(true);
     else fail(/** @type {Error} */ (error));
   }
-  setTimeout(look, job.running ? 150 : document.hidden ? 3000 : 700);
+  setTimeout(look, job.running || bench?.preparing ? 150 : document.hidden ? 3000 : 700);
 }
 
 by("cancel").addEventListener("click", () => post("api/cancel").catch(fail));

@@ -10,8 +10,10 @@ export const leaves = (errors) => errors.heldout_rmse_m ?? errors.rmse_m;
 export function storyPart(page) {
   const list = h("ol", { class: "steps", id: "story" });
   const says = h("p", { id: "falls", role: "status" });
+  const far = h("ol", { class: "steps", id: "reached" });
+  const so = h("div", { hidden: true, role: "status" }, h("h3", {}, "What Learn has found so far"), far);
   const root = h("section", { class: "card story", "aria-label": "The story so far" }, h("h2", {}, "The story so far"),
-    h("p", { class: "hint" }, "The bar is the error that is left in runs that were left out of the fit (root mean square)."), list, says);
+    h("p", { class: "hint" }, "The bar is the error that is left in runs that were left out of the fit (root mean square)."), list, says, so);
 
   /** @param {any} state */
   function show(state) {
@@ -44,5 +46,14 @@ export function storyPart(page) {
     else if (is < was) { says.className = "falls"; says.textContent = `▼ The error left out falls from ${mm(was)} to ${mm(is)}.`; }
     else { says.className = "rises"; says.textContent = `▲ The error left out does not fall: ${mm(was)} before, ${mm(is)} now.`; }
   }
-  return { root, show };
+  /** Steps that learn has reached and may still take back; its end makes them the story. @param {any[]} steps */
+  function reached(steps) {
+    const most = Math.max(1e-9, ...steps.map((step) => leaves(step)));
+    so.hidden = !steps.length;
+    far.replaceChildren(...steps.map((step) => h("li", { class: "draft" },
+      h("span", {}, breaks(step.added ? `+ ${step.added}` : "nominal robot")), h("span", { class: "value" }, mm(leaves(step))),
+      h("span", { class: "bar", "aria-hidden": "true" }, h("span", { style: `width: ${(100 * leaves(step)) / most}%` })),
+      h("span", { class: "hint" }, pText(step.p_adjusted)))));
+  }
+  return { root, show, reached };
 }

@@ -24,7 +24,8 @@ use umbmark_plot::page::{Origin, Provenance, page};
 use umbmark_plot::render::{legend, plotly};
 use umbmark_plot::study::{Options, Study};
 
-use crate::bench::{Act, Bench, MODEL, Trouble, formula_of};
+use crate::act::{Act, formula_of};
+use crate::bench::{Bench, MODEL, Trouble};
 use crate::cloud;
 use crate::dropped;
 use crate::guard::Guard;
@@ -223,7 +224,7 @@ impl App {
         let bench = self.bench.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let drops = self.served.drops.display().to_string();
         let Some(bench) = bench else { return Ok(json!({ "key": "empty", "job": job, "drops": drops })) };
-        let key = format!("{} {}", bench.revision(), bench.place.display());
+        let key = format!("{} {} {}", bench.revision(), bench.is_prepared(), bench.place.display());
         if since.is_some_and(|since| since == key) {
             return Ok(json!({ "key": key, "job": job }));
         }
@@ -238,7 +239,9 @@ impl App {
         let opened = self.pool.install(|| Bench::open(place, &topics, self.served.options));
         match opened {
             Ok(bench) => {
-                *self.bench.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(bench));
+                let bench = Arc::new(bench);
+                *self.bench.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&bench));
+                bench.prepare(&self.pool);
                 *self.report.lock().unwrap_or_else(PoisonError::into_inner) = None;
                 Ok(json!({ "opened": place.display().to_string() }))
             }
@@ -319,6 +322,9 @@ impl App {
         if !matches!(act, Act::Hide { .. }) {
             self.jobs.busy()?;
         }
+        if act.drafts() {
+            bench.wait();
+        }
         self.pool.install(|| bench.act(&act))?;
         self.state(None)
     }
@@ -332,9 +338,18 @@ impl App {
     fn job(&self, kind: &str) -> Result<Value, Trouble> {
         let (bench, pool) = (self.bench()?, Arc::clone(&self.pool));
         let number = match kind {
-            "fit" => self.jobs.begin("fit", move |_| pool.install(|| bench.fit())),
-            "diagnose" => self.jobs.begin("diagnose", move |watch| pool.install(|| bench.diagnose(watch))),
-            "learn" => self.jobs.begin("learn", move |watch| pool.install(|| bench.learn(watch))),
+            "fit" => self.jobs.begin("fit", move |_| {
+                bench.wait();
+                pool.install(|| bench.fit())
+            }),
+            "diagnose" => self.jobs.begin("diagnose", move |watch| {
+                bench.wait();
+                pool.install(|| bench.diagnose(watch))
+            }),
+            "learn" => self.jobs.begin("learn", move |watch| {
+                bench.wait();
+                pool.install(|| bench.learn(watch))
+            }),
             "report" => {
                 let (report, options) = (Arc::clone(&self.report), self.served.options);
                 self.jobs.begin("report", move |watch| {

@@ -3,13 +3,15 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
+use rayon::ThreadPool;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Value, json};
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::{self, diagnose, first_model};
-use umbmark_core::effect::{Formula, Model, Part, Target};
+use umbmark_core::diagnose::{self, diagnose};
+use umbmark_core::effect::{Model, Part};
 use umbmark_core::evidence::Fit;
 use umbmark_core::learn::{Kept, learn_from};
 use umbmark_core::path::Direction;
@@ -19,10 +21,14 @@ use umbmark_core::watch::Watch;
 use umbmark_io::{ModelFile, Topics};
 use umbmark_plot::study::{Absent, Drives, Options, Study};
 
+use crate::act::has;
+use crate::later::Later;
 use crate::state::{Draft, Errors, State, Step, VERSION};
 
 /// Suggestions whose worth is worked out.
 const WORTHS: usize = 3;
+/// How long a page waits for runs to be ready for fits before it shows the rest.
+const A_MOMENT: Duration = Duration::from_millis(300);
 /// What the file of a model is called.
 pub const MODEL: &str = "model.toml";
 
@@ -47,7 +53,7 @@ pub struct Bench {
     pub data: Arc<Dataset>,
     options: diagnose::Options,
     inspection: Value,
-    kept: Result<Kept, Trouble>,
+    kept: Later<Kept>,
     drives: Result<Drives, Absent>,
     file: PathBuf,
     work: Mutex<Work>,
@@ -82,79 +88,13 @@ struct Predicted {
     heading: Vec<f64>,
 }
 
-/// A change of the work.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(tag = "act", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Act {
-    /// Adds the effects that are usually fitted first.
-    First,
-    /// Adds an effect, free to be fitted.
-    Add {
-        /// Its name.
-        effect: String,
-        /// Values to begin with.
-        #[serde(default)]
-        values: BTreeMap<String, Option<f64>>,
-        /// p of the suggestion.
-        #[serde(default)]
-        p: Option<f64>,
-    },
-    /// Adds a law of the user's own.
-    Formula {
-        /// Its name.
-        name: String,
-        /// What it acts on.
-        acts_on: String,
-        /// The formula.
-        formula: String,
-        /// Start values of its parameters.
-        parameters: BTreeMap<String, f64>,
-    },
-    /// Takes an effect out.
-    Remove {
-        /// Its name.
-        effect: String,
-    },
-    /// Sets a value.
-    Set {
-        /// The effect.
-        effect: String,
-        /// Its parameter.
-        parameter: String,
-        /// The value.
-        value: f64,
-    },
-    /// Lets fits change an effect, or not.
-    Free {
-        /// The effect.
-        effect: String,
-        /// Whether they may.
-        free: bool,
-    },
-    /// Takes the draft into the story.
-    Accept,
-    /// Drops the draft; without one, goes a step back.
-    Undo,
-    /// Goes to a step of the story.
-    Goto {
-        /// Its number, from 0.
-        step: usize,
-    },
-    /// Says which runs are not drawn.
-    Hide {
-        /// Their names.
-        runs: Vec<String>,
-    },
-}
-
 impl Bench {
-    /// Puts a dataset on the bench, with the work that was left beside it.
+    /// Puts a dataset on the bench, with the work that was left beside it. Nothing is fitted before it is [prepared](Bench::prepare).
     pub fn open(place: &Path, topics: &Topics, options: diagnose::Options) -> Result<Bench, Trouble> {
         let data = umbmark_io::load_with(place, topics).map_err(Trouble::because)?;
         let robot = data.nominal_robot().map_err(Trouble::because)?.clone();
         let found = data.inspect();
         let inspection = result::Inspection::new(&place.display().to_string(), &data, &found, &[]);
-        let kept = Kept::new(&data, &options).map_err(Trouble::because);
         let drives = Drives::of(&data);
         let file = State::file_of(place);
         let state = match State::read(&file).map_err(Trouble::because)? {
@@ -166,11 +106,8 @@ impl Bench {
                 state
             }
             None => {
-                let nominal = Model::new(&robot);
-                let errors = kept.as_ref().ok().and_then(|kept| kept.as_it_is(&nominal).ok());
-                let errors = errors.map(|step| Errors::from(&result::Step::from(&step))).unwrap_or_default();
-                let model = ModelFile::new(nominal).text();
-                let step = Step { words: "nominal robot".into(), model, errors, ..Step::default() };
+                let model = ModelFile::new(Model::new(&robot)).text();
+                let step = Step { words: "nominal robot".into(), model, ..Step::default() };
                 State { version: VERSION, steps: vec![step], ..State::default() }
             }
         };
@@ -180,19 +117,52 @@ impl Bench {
             data: Arc::new(data),
             options,
             inspection: serde_json::to_value(&inspection).map_err(Trouble::because)?,
-            kept,
+            kept: Later::default(),
             drives,
             file,
             work: Mutex::new(work),
         })
     }
 
+    /// Makes the runs ready for fits, on a thread of its own, and waits a moment for it: of short logs the page has all at once.
+    pub fn prepare(self: &Arc<Bench>, pool: &Arc<ThreadPool>) {
+        let (bench, pool) = (Arc::clone(self), Arc::clone(pool));
+        let work = move || bench.kept.make(|| pool.install(|| bench.prepared()));
+        match std::thread::Builder::new().name("prepare".into()).spawn(work) {
+            Ok(_) => self.kept.wait(Some(A_MOMENT)),
+            Err(error) => self.kept.make(|| Err(Trouble(format!("The system gives no thread: {error}.")))),
+        }
+    }
+
+    /// The runs, ready for fits, once the error of the nominal robot is known.
+    fn prepared(&self) -> Result<Kept, Trouble> {
+        let kept = Kept::new(&self.data, &self.options).map_err(Trouble::because)?;
+        let unknown = |step: &Step| step.errors == Errors::default();
+        let first = self.work().state.steps.first().filter(|step| unknown(step)).cloned();
+        let errors = first.and_then(|step| kept.as_it_is(&self.parse(&step.model).ok()?).ok());
+        if let (Some(errors), Some(step)) = (errors, self.work().state.steps.first_mut().filter(|step| unknown(step))) {
+            step.errors = Errors::from(&result::Step::from(&errors));
+        }
+        Ok(kept)
+    }
+
+    /// Waits until the runs are ready for fits; never on a thread of the pool, which may be the one that makes them ready.
+    pub fn wait(&self) {
+        self.kept.wait(None);
+    }
+
     fn work(&self) -> MutexGuard<'_, Work> {
         self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn kept(&self) -> Result<&Kept, Trouble> {
-        self.kept.as_ref().map_err(Trouble::clone)
+    fn kept(&self) -> Result<Arc<Kept>, Trouble> {
+        let still = || Trouble("The runs are still made ready for fits.".into());
+        self.kept.found().unwrap_or_else(|| Err(still()))
+    }
+
+    /// Whether the runs are ready for fits, or cannot be made so.
+    pub fn is_prepared(&self) -> bool {
+        self.kept.found().is_some()
     }
 
     /// The number of the last change.
@@ -218,7 +188,8 @@ impl Bench {
             "model": self.parts(&model),
             "found": of(&work.found),
             "fitted": of(&work.fitted),
-            "unfit": self.kept.as_ref().err().map(Trouble::to_string),
+            "unfit": self.kept.found().and_then(Result::err).map(|trouble| trouble.to_string()),
+            "preparing": !self.is_prepared(),
             "file": self.file.display().to_string(),
             "unsaved": work.unsaved,
             "place": self.place.display().to_string(),
@@ -247,7 +218,7 @@ impl Bench {
         model.parts().iter().map(part).collect()
     }
 
-    fn parse(&self, text: &str) -> Result<Model, Trouble> {
+    pub(crate) fn parse(&self, text: &str) -> Result<Model, Trouble> {
         let robot = self.data.nominal_robot().map_err(Trouble::because)?;
         Ok(ModelFile::parse(MODEL, text, Some(robot)).map_err(Trouble::because)?.model)
     }
@@ -269,7 +240,7 @@ impl Bench {
     }
 
     /// Changes the work, and saves it.
-    fn change(&self, of: impl FnOnce(&mut State) -> Result<(), Trouble>) -> Result<(), Trouble> {
+    pub(crate) fn change(&self, of: impl FnOnce(&mut State) -> Result<(), Trouble>) -> Result<(), Trouble> {
         let mut work = self.work();
         let mut state = work.state.clone();
         of(&mut state)?;
@@ -279,116 +250,8 @@ impl Bench {
         Ok(())
     }
 
-    /// Does what the user says.
-    pub fn act(&self, act: &Act) -> Result<(), Trouble> {
-        match act {
-            Act::First => {
-                let usual = first_model(&self.data).map_err(Trouble::because)?;
-                self.draft("wheels and wheelbase", None, |model| {
-                    usual.parts().iter().for_each(|part| model.adopt(part));
-                    Ok(())
-                })
-            }
-            Act::Add { effect, values, p } => self.draft(&format!("+ {effect}"), *p, |model| {
-                model.add(effect).map_err(Trouble::because)?.free = true;
-                for (parameter, value) in values.iter().filter_map(|(name, value)| Some((name, (*value)?))) {
-                    model.set(effect, parameter, value).map_err(Trouble::because)?;
-                }
-                model.check_drive().map_err(Trouble::because)
-            }),
-            Act::Formula { name, acts_on, formula, parameters } => self.draft(&format!("+ {name}"), None, |model| {
-                let made = formula_of(name, acts_on, formula, parameters)?;
-                let values: Vec<f64> = parameters.values().copied().collect();
-                model.add_formula(made, &values).map_err(Trouble::because)?.free = true;
-                Ok(())
-            }),
-            Act::Remove { effect } => self.draft(&format!("- {effect}"), None, |model| {
-                *model = model.without(effect);
-                Ok(())
-            }),
-            Act::Set { effect, parameter, value } => {
-                self.draft(&format!("{parameter} of {effect} set"), None, |model| {
-                    has(model, effect)?;
-                    model.set(effect, parameter, *value).map_err(Trouble::because)
-                })
-            }
-            Act::Free { effect, free } => {
-                self.draft(&format!("{effect} {}", if *free { "free" } else { "kept" }), None, |model| {
-                    let mut part = has(model, effect)?.clone();
-                    part.free = *free;
-                    model.adopt(&part);
-                    Ok(())
-                })
-            }
-            Act::Accept => self.accept(),
-            Act::Undo => self.change(|state| {
-                if state.draft.take().is_none() {
-                    state.at = state.at.checked_sub(1).ok_or_else(|| Trouble("There is nothing to undo.".into()))?;
-                }
-                Ok(())
-            }),
-            Act::Goto { step } => self.change(|state| {
-                if *step >= state.steps.len() {
-                    return Err(Trouble(format!("There is no step {step}.")));
-                }
-                (state.at, state.draft) = (*step, None);
-                Ok(())
-            }),
-            Act::Hide { runs } => {
-                let known = |name: &String| self.data.runs.iter().any(|run| run.name == *name);
-                self.change(|state| {
-                    state.hidden = runs.iter().filter(|name| known(name)).cloned().collect();
-                    Ok(())
-                })
-            }
-        }
-    }
-
-    fn draft(
-        &self,
-        words: &str,
-        p: Option<f64>,
-        of: impl FnOnce(&mut Model) -> Result<(), Trouble>,
-    ) -> Result<(), Trouble> {
-        let mut model = self.model()?;
-        of(&mut model)?;
-        let errors = self.errors(&model)?;
-        let text = ModelFile::new(model).text();
-        self.change(|state| {
-            // Words of the draft tell all that was done since the step.
-            let before = state.draft.take().map(|draft| (draft.words, draft.p_adjusted));
-            let (before, p_before) = before.unwrap_or_default();
-            let begun = || before.clone() + ", " + words;
-            let words = if before.is_empty() || words.ends_with(" set") && before.ends_with(" set") {
-                words.to_owned()
-            } else if words.ends_with(" set") {
-                before.clone()
-            } else {
-                begun()
-            };
-            state.draft = Some(Draft { words, model: text, errors, fitted: false, p_adjusted: p.or(p_before) });
-            Ok(())
-        })
-    }
-
-    fn accept(&self) -> Result<(), Trouble> {
-        let Some(draft) = self.work().state.draft.clone() else {
-            return Err(Trouble("There is no draft to accept.".into()));
-        };
-        let model = self.parse(&draft.model)?;
-        let effects = model.parts().iter().map(|part| part.effect.name().to_owned()).collect();
-        self.change(|state| {
-            state.draft = None;
-            state.steps.truncate(state.at + 1);
-            let Draft { words, model, errors, p_adjusted, .. } = draft;
-            state.steps.push(Step { words, learnt: false, model, effects, p_adjusted, errors });
-            state.at = state.steps.len() - 1;
-            Ok(())
-        })
-    }
-
     /// The errors of a model with the values that it has.
-    fn errors(&self, model: &Model) -> Result<Errors, Trouble> {
+    pub(crate) fn errors(&self, model: &Model) -> Result<Errors, Trouble> {
         let error = self.kept()?.error(model).map_err(Trouble::because)?;
         Ok(Errors { rmse_m: finite(error.position), heading_rmse_rad: error.heading, ..Errors::default() })
     }
@@ -564,6 +427,11 @@ impl Bench {
         self.place.file_name().unwrap_or(self.place.as_os_str()).to_string_lossy().into_owned()
     }
 
+    /// The model that is tried.
+    pub(crate) fn draft_now(&self) -> Option<Draft> {
+        self.work().state.draft.clone()
+    }
+
     /// The step that is looked at, and whether there is a draft.
     pub fn step(&self) -> (Step, bool) {
         let work = self.work();
@@ -577,24 +445,6 @@ fn current(state: &State) -> &str {
         Some(draft) => &draft.model,
         None => state.steps.get(state.at).map_or("", |step| &step.model),
     }
-}
-
-fn has<'m>(model: &'m Model, effect: &str) -> Result<&'m Part, Trouble> {
-    let own = model.parts().iter().find(|part| part.effect.name() == effect);
-    own.ok_or_else(|| Trouble(format!("The model has no {effect}.")))
-}
-
-/// A law of the user's own.
-pub fn formula_of(
-    name: &str,
-    acts_on: &str,
-    text: &str,
-    parameters: &BTreeMap<String, f64>,
-) -> Result<Formula, Trouble> {
-    let target = Target::ALL.into_iter().find(|target| target.name() == acts_on);
-    let target = target.ok_or_else(|| Trouble(format!("A formula does not act on \"{acts_on}\".")))?;
-    let names: Vec<&str> = parameters.keys().map(String::as_str).collect();
-    Formula::new(name, target, text, &names).map_err(Trouble::because)
 }
 
 /// A number, or nothing where it is not finite.

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use serde_json::{Value, json};
-use umbmark_core::watch::Watch;
+use umbmark_core::watch::{Reached, Watch};
 
 use crate::bench::Trouble;
 
@@ -21,6 +21,7 @@ struct Job {
     kind: &'static str,
     running: bool,
     share: f64,
+    steps: Vec<Reached>,
     stop: Arc<AtomicBool>,
     error: Option<String>,
 }
@@ -34,7 +35,13 @@ impl Jobs {
     pub fn told(&self) -> Value {
         let job = self.now();
         let stopped = job.stop.load(Ordering::Relaxed);
+        let step = |step: &Reached| {
+            json!({
+                "added": step.added, "p_adjusted": step.p_adjusted, "rmse_m": step.rmse, "heldout_rmse_m": step.heldout_rmse,
+            })
+        };
         json!({
+            "steps": job.steps.iter().map(step).collect::<Vec<_>>(),
             "number": job.number, "kind": job.kind, "running": job.running, "share": job.share, "stopped": stopped, "error": job.error,
         })
     }
@@ -62,14 +69,20 @@ impl Jobs {
             if job.running {
                 return Err(Trouble(format!("Wait until {} is done, or cancel it.", job.kind)));
             }
-            *job =
-                Job { number: job.number + 1, kind, running: true, share: 0.0, stop: Arc::clone(&stop), error: None };
+            let number = job.number + 1;
+            *job = Job { number, kind, running: true, stop: Arc::clone(&stop), ..Job::default() };
             job.number
         };
         let jobs = Arc::clone(self);
         let run = move || {
             let progress = |share: f64| jobs.now().share = share;
-            let done = catch_unwind(AssertUnwindSafe(|| work(&Watch { stop: &stop, progress: &progress })));
+            let reached = |step: &Reached| {
+                let steps = &mut jobs.now().steps;
+                steps.truncate(step.after);
+                steps.push(*step);
+            };
+            let watch = Watch { reached: Some(&reached), ..Watch::new(&stop, &progress) };
+            let done = catch_unwind(AssertUnwindSafe(|| work(&watch)));
             let error = match done {
                 Ok(Ok(())) => None,
                 Ok(Err(trouble)) => Some(trouble.to_string()),
@@ -113,6 +126,23 @@ mod tests {
         jobs.stop();
         let told = wait(&jobs);
         assert_eq!((&told["stopped"], &told["error"], &told["share"]), (&json!(true), &Value::Null, &json!(0.25)));
+    }
+
+    #[test]
+    fn steps_are_told_as_they_are_reached_and_those_taken_back_are_gone() {
+        let jobs = Arc::new(Jobs::default());
+        let reach = |after, added| Reached { after, added, p_adjusted: None, rmse: 2.0, heldout_rmse: 3.0 };
+        jobs.begin("learn", move |watch| {
+            for (after, added) in [(0, None), (1, Some("crab")), (2, Some("scale")), (1, Some("wheelbase"))] {
+                watch.reach(|| reach(after, added));
+            }
+            Ok(())
+        })
+        .unwrap();
+        let told = wait(&jobs);
+        let added: Vec<&Value> = told["steps"].as_array().unwrap().iter().map(|step| &step["added"]).collect();
+        assert_eq!(added, [&Value::Null, &json!("wheelbase")]);
+        assert_eq!(told["steps"][0]["heldout_rmse_m"], 3.0);
     }
 
     #[test]

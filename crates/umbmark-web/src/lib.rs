@@ -4,12 +4,14 @@
 //! host and of the asking page are checked. Every number is computed by the functions that the verbs of the command call. All of a user's
 //! work is one JSON document ([`State`]), which is written beside the data.
 
+mod act;
 mod app;
 mod bench;
 mod cloud;
 mod dropped;
 mod guard;
 mod job;
+mod later;
 mod page;
 mod server;
 mod state;

@@ -48,7 +48,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     };
     let stop = AtomicBool::new(false);
     let found = session
-        .told("% of the runs", |progress| conditions(&data, &model, &options, &Watch { stop: &stop, progress }))??;
+        .told("% of the runs", |progress| conditions(&data, &model, &options, &Watch::new(&stop, progress)))??;
     if session.json() {
         session.print_json(&result::Conditions::new(&found))?;
     } else {

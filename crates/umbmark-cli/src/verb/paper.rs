@@ -73,7 +73,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     for (_, run) in EXPERIMENTS.iter().filter(|(experiment, _)| wanted(*experiment)) {
         let text = session.told("% of the tests", |progress| {
             let stop = AtomicBool::new(false);
-            run(&Bench { trials, seed, watch: &Watch { stop: &stop, progress } }, &mut found)
+            run(&Bench { trials, seed, watch: &Watch::new(&stop, progress) }, &mut found)
         });
         texts.push(text??);
     }

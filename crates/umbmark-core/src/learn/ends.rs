@@ -15,6 +15,7 @@ use std::sync::Arc;
 /// Learns which effects the robot of some return poses has, beside those of a `start`.
 pub(super) fn learn(ends: &Ends, start: &Model, options: &Options, watch: &Watch) -> Result<Learnt, FitError> {
     let mut story = Story::new(ends);
+    Step::reach(&story.steps, watch);
     if !ends.is_sound() {
         return Ok(Learnt::of_faults(ends, story.steps));
     }
@@ -22,10 +23,12 @@ pub(super) fn learn(ends: &Ends, start: &Model, options: &Options, watch: &Watch
         let first = story.model.robot().drive.first_effects();
         for effect in &first[..2] {
             story.add(&free_part(&ends.robot, effect)?)?;
+            Step::reach(&story.steps, watch);
         }
     }
     for part in start.parts().iter().filter(|part| !story.has(part)).cloned().collect::<Vec<_>>() {
         story.add(&part)?;
+        Step::reach(&story.steps, watch);
     }
     let mut remarks = Vec::new();
     let mut diagnosis = ends::diagnose(ends, &story.model, options)?;
@@ -40,6 +43,7 @@ pub(super) fn learn(ends: &Ends, start: &Model, options: &Options, watch: &Watch
         let why = match story.grown_by(&suspect, options) {
             Ok(Some(further)) => {
                 (story, diagnosis) = further;
+                Step::reach(&story.steps, watch);
                 continue;
             }
             Ok(None) => "it does not lower the cross-validated error".to_owned(),

@@ -4,6 +4,7 @@ use crate::diagnose::{Diagnosis, Reason, Repeated, Verdict};
 use crate::effect::Model;
 use crate::evidence::Evidence;
 use crate::likelihood::Noise;
+use crate::watch::{Reached, Watch};
 
 /// Maximum number of effects of a learnt model.
 pub(super) const MOST_EFFECTS: usize = 6;
@@ -38,6 +39,20 @@ pub struct Step {
     pub aicc: Option<f64>,
     /// Bayes' criterion.
     pub bic: Option<f64>,
+}
+
+impl Step {
+    /// Tells the last of some steps to who watches.
+    pub(super) fn reach(steps: &[Step], watch: &Watch) {
+        let Some((step, before)) = steps.split_last() else { return };
+        watch.reach(|| Reached {
+            after: before.len(),
+            added: step.added,
+            p_adjusted: step.p_adjusted,
+            rmse: step.error.position,
+            heldout_rmse: step.held_out.position,
+        });
+    }
 }
 
 /// What was learnt.

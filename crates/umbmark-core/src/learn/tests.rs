@@ -138,7 +138,7 @@ fn learning_that_is_stopped_ends_with_the_step_that_it_is_at_and_says_so() {
     let data = simulated(&sloped, &Path::umbmark(), 5, 31, 0..1).remove(0);
     let options = Options { draws: 199, ..Options::default() };
     let nominal = Model::new(&Robot::labmate());
-    let stopped = Watch { stop: &AtomicBool::new(true), progress: &|_| () };
+    let stopped = Watch::new(&AtomicBool::new(true), &|_| ());
     let part = learn_from(&data, &nominal, &options, &stopped).unwrap();
     let whole = learn(&data, &options).unwrap();
     assert!(part.partial && part.steps.len() == 3 && part.verdict != Verdict::Explained);
@@ -162,7 +162,7 @@ fn a_delay_that_the_given_model_fixes_is_kept_and_otherwise_it_is_that_of_the_mo
     let data = watched(&model, 3, 62);
     let options = Options { draws: 99, ..Options::default() };
     let stop = AtomicBool::new(false);
-    let watch = Watch { stop: &stop, progress: &|_| () };
+    let watch = Watch::new(&stop, &|_| ());
     let delay = |start: &Model| {
         let learnt = learn_from(&data, start, &options, &watch).unwrap();
         learnt.model.get("reference_delay", "delay_s").unwrap()

@@ -9,7 +9,7 @@ use crate::effect::{Model, Part, find};
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit, fit_alone, told};
 use crate::evidence::{Estimate, Evidence, Fit, FitError};
 use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE, stands_for_the_reference};
-use crate::watch::Watch;
+use crate::watch::{Reached, Watch};
 
 /// The runs do not determine a first effect if its standard error exceeds this multiple of its usual size ...
 const OPEN: f64 = 10.0;
@@ -25,12 +25,14 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
     }
     let mut model = Model::new(&observed.robot);
     let mut steps = vec![step(plainly(observed, &model)?, None)];
+    Step::reach(&steps, watch);
     if !observed.is_sound() {
         return Ok(Learnt::of_faults(observed, steps));
     }
     let mut add = |model: &mut Model, effect: &'static str, p: Option<f64>, fitted: Fitted| {
         *model = fitted.model.clone();
         steps.push(step(fitted, Some((effect, vec![effect], p))));
+        Step::reach(&steps, watch);
     };
     // What the given model fixes of the reference holds, whatever the motion says.
     let fixed = |part: &&Part| !part.free && stands_for_the_reference(part.effect.name());
@@ -72,7 +74,16 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
     }
     let fitted = Fitted { taken, ..fit(observed, &model)? };
     let not_shown = observed.robot.drive.first_effects().into_iter().filter(|effect| !first.contains(effect));
-    let search = tracks::search(fitted, options, (MOST_EFFECTS, Wanted::All), not_shown.collect(), watch)?;
+    // The search tells the model that it begins with anew, as it is written.
+    let begun = steps.last().map(|step| (steps.len() - 1, step.added, step.p_adjusted));
+    let after_these = |step: &Reached| {
+        let (before, added, p_adjusted) = begun.unwrap_or_default();
+        let own = if step.after == 0 { Reached { added, p_adjusted, ..*step } } else { *step };
+        watch.reach(|| Reached { after: before + step.after, ..own });
+    };
+    let watched = Watch { reached: Some(&after_these), ..Watch::new(watch.stop, watch.progress) };
+    let listened = if watch.reached.is_some() { &watched } else { watch };
+    let search = tracks::search(fitted, options, (MOST_EFFECTS, Wanted::All), not_shown.collect(), listened)?;
     let of_reference = |step: &&mut Step| {
         step.added.is_some_and(|effect| search.exams[0].fitted.taken.iter().any(|own| own.effect == effect))
     };

@@ -260,7 +260,7 @@ fn a_plan_that_is_stopped_has_the_numbers_of_runs_that_were_looked_at() {
     assert!(!whole.partial && whole.by_runs.len() == 4 && whole.extended.is_some());
     let stop = AtomicBool::new(false);
     let after_two = |share: f64| stop.store(share >= 0.5, Ordering::Relaxed);
-    let part = request.findings(&setting, &Watch { stop: &stop, progress: &after_two }).unwrap();
+    let part = request.findings(&setting, &Watch::new(&stop, &after_two)).unwrap();
     assert!(part.partial && part.by_runs.len() == 2 && part.answers.len() == 1);
     assert!(part.alternatives.is_empty() && part.drifts.is_empty() && part.extended.is_none());
     assert_eq!(part.by_runs[1].least, whole.by_runs[1].least);

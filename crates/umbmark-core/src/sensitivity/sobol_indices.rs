@@ -480,10 +480,10 @@ mod tests {
         let options = SobolOptions { base_points: 1 << 14, second_order: false, seed: 1 };
         let stop = AtomicBool::new(false);
         let half = |share: f64| stop.store(share >= 0.5, Ordering::Relaxed);
-        let found = sobol_indices(&ISHIGAMI, &inputs, &options, &Watch { stop: &stop, progress: &half }).unwrap();
+        let found = sobol_indices(&ISHIGAMI, &inputs, &options, &Watch::new(&stop, &half)).unwrap();
         assert!(found.partial && found.base_points >= 2 << 10 && found.base_points < 1 << 14, "{}", found.base_points);
         assert_near(&found.outputs[0].first, &ishigami_indices().0, 0.03);
-        let never_begun = Watch { stop: &AtomicBool::new(true), progress: &|_| () };
+        let never_begun = Watch::new(&AtomicBool::new(true), &|_| ());
         let refused = sobol_indices(&ISHIGAMI, &inputs, &options, &never_begun).unwrap_err();
         assert_eq!(refused, SensitivityError::Stopped);
     }

@@ -155,7 +155,7 @@ impl Tolerances<'_> {
             }
             Ok(sizes)
         };
-        let quiet = Watch { stop: watch.stop, progress: &|_| () };
+        let quiet = Watch::new(watch.stop, &|_| ());
         let pieces = quiet.pieces(self.tests, count.div_ceil(CHUNK) as usize, robots)?;
         let pieces: Option<Vec<Vec<f64>>> = pieces.into_iter().collect();
         let mut sizes = pieces.ok_or(SensitivityError::Stopped)?.concat();

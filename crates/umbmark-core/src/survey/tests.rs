@@ -71,7 +71,7 @@ fn each_robot_is_diagnosed_as_by_itself_and_one_that_cannot_be_read_does_not_sto
 #[test]
 fn a_survey_that_is_stopped_says_so() {
     let stop = std::sync::atomic::AtomicBool::new(true);
-    let watch = Watch { stop: &stop, progress: &|_| () };
+    let watch = Watch::new(&stop, &|_| ());
     let load = |_| Ok::<Dataset, Infallible>(Dataset::default());
     let found = survey(&["a".to_owned()], load, false, &Options::default(), &watch);
     assert!(found.partial && found.rows.is_empty() && found.failed.is_empty());

@@ -13,7 +13,7 @@ use crate::effect::{Law, Model};
 use crate::evidence::FitError;
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, silent, trusted, without, without_silent_taken};
 use crate::likelihood::Fitted;
-use crate::watch::Watch;
+use crate::watch::{Reached, Watch};
 use std::borrow::Cow;
 
 /// A law outside the catalogue is added where the error of positions or headings in held-out runs falls by this share, or the
@@ -124,6 +124,7 @@ pub(crate) fn search(
     let exam = Examination::new(fitted)?;
     let left = missing(&exam, options, &[&refused[..], &removed].concat());
     let written = vec![trusted(exam.fitted.clone())?];
+    watch.reach(|| reached(&written[0], 0, None));
     let mut search = Search {
         exams: vec![exam],
         written,
@@ -197,6 +198,18 @@ fn too_dear(
     Ok(None)
 }
 
+/// A model as a step of what is told while the search goes on: the one that it begins with is step 0.
+fn reached(written: &Alone, after: usize, added: Option<&Suspect>) -> Reached {
+    let (inside, held_out) = written.misses();
+    Reached {
+        after,
+        added: added.map(|suspect| suspect.best),
+        p_adjusted: added.map(|suspect| suspect.p_adjusted),
+        rmse: inside.position,
+        heldout_rmse: held_out.position,
+    }
+}
+
 impl Search {
     /// Adds what is certified as missing, one effect after the other.
     fn grow(
@@ -222,7 +235,7 @@ impl Search {
                     }
                 };
                 if !self.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&grown.exam, smooth, options)) {
-                    self.take(*grown, Added { suspect, by: Found::Listed(finding) });
+                    self.take(*grown, Added { suspect, by: Found::Listed(finding) }, watch);
                     self.left = missing(self.last(), options, &self.passed(refused));
                     continue;
                 }
@@ -235,7 +248,7 @@ impl Search {
                 }
                 break;
             };
-            self.take(grown, added);
+            self.take(grown, added, watch);
             self.left = missing(self.last(), options, &self.passed(refused));
         }
         Ok(())
@@ -392,11 +405,12 @@ impl Search {
     }
 
     /// Goes on from a model that has grown.
-    fn take(&mut self, Grown { exam, written, removed, inseparable }: Grown, added: Added) {
+    fn take(&mut self, Grown { exam, written, removed, inseparable }: Grown, added: Added, watch: &Watch) {
         let before = self.last().fitted.model.clone();
         removed.iter().chain(&inseparable).for_each(|effect| self.refuse(&before, effect));
         self.removed.extend(removed);
         self.inseparable.extend(inseparable);
+        watch.reach(|| reached(&written, self.exams.len(), Some(&added.suspect)));
         self.written.push(written);
         self.exams.push(exam);
         self.added.push(added);
