@@ -170,6 +170,14 @@ def command(setting: Setting, random: Random) -> Changes:
     }
 
 
+def rough_floor(_: Setting, random: Random) -> Changes:
+    """A floor that turns the robot at random, and hardly changes its way."""
+    return {
+        "heading_noise_rad_sqrt_m": log_uniform(random, 4e-3, 1e-2),
+        "wheel_noise_sqrt_m": log_uniform(random, 5e-5, 2e-4),
+    }
+
+
 def gaps(_: Setting, random: Random) -> Changes:
     """Holes in the poses."""
     return {"gaps_a_minute": random.uniform(1, 4)}
@@ -311,6 +319,7 @@ WORLDS = {
         World("carried", "jumps that last 0.8 to 2.5 s: the robot is carried", carried),
         World("spinning", "a wheel spins on the spot for 0.3 to 1.5 s", spinning),
         World("glitches", "0.5 to 5 % bad poses, single or in bursts", glitches),
+        World("rough_floor", "headings wander by 4 to 10 mrad per root metre, ways hardly", rough_floor),
         World("tails", "noise of the reference with t2 tails", always(noise="t2")),
         World("late_start", "wheels turn 2 to 5 s before the first pose", late_start),
         World("moving_start", "the log begins and ends in motion", moving_start),

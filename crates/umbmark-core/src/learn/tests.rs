@@ -138,7 +138,8 @@ fn learning_that_is_stopped_ends_with_the_step_that_it_is_at_and_says_so() {
     let data = simulated(&sloped, &Path::umbmark(), 5, 31, 0..1).remove(0);
     let options = Options { draws: 199, ..Options::default() };
     let nominal = Model::new(&Robot::labmate());
-    let stopped = Watch::new(&AtomicBool::new(true), &|_| ());
+    let at_once = AtomicBool::new(true);
+    let stopped = Watch::new(&at_once, &|_| ());
     let part = learn_from(&data, &nominal, &options, &stopped).unwrap();
     let whole = learn(&data, &options).unwrap();
     assert!(part.partial && part.steps.len() == 3 && part.verdict != Verdict::Explained);

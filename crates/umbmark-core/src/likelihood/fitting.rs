@@ -320,7 +320,10 @@ impl Tracks<'_> {
         let slopes = |columns| Slopes { values, free, columns: Arc::new(columns) };
         if !fitted.observed.runs.iter().any(ObservedRun::is_linearised) {
             let (columns, residuals) = fitted.observed.columns_and_residuals(model, &fitted.free);
-            return Ok((At { observed: None, slopes: slopes(columns), reference: fitted.reference.clone() }, residuals));
+            return Ok((
+                At { observed: None, slopes: slopes(columns), reference: fitted.reference.clone() },
+                residuals,
+            ));
         }
         let (observed, chain) = (fitted.observed.along(model), model.chain());
         let residuals = observed.runs.par_iter().map(|run| run.residuals_along(&chain)).collect();

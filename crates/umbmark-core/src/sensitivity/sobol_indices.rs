@@ -483,7 +483,8 @@ mod tests {
         let found = sobol_indices(&ISHIGAMI, &inputs, &options, &Watch::new(&stop, &half)).unwrap();
         assert!(found.partial && found.base_points >= 2 << 10 && found.base_points < 1 << 14, "{}", found.base_points);
         assert_near(&found.outputs[0].first, &ishigami_indices().0, 0.03);
-        let never_begun = Watch::new(&AtomicBool::new(true), &|_| ());
+        let at_once = AtomicBool::new(true);
+        let never_begun = Watch::new(&at_once, &|_| ());
         let refused = sobol_indices(&ISHIGAMI, &inputs, &options, &never_begun).unwrap_err();
         assert_eq!(refused, SensitivityError::Stopped);
     }
