@@ -319,7 +319,11 @@ WORLDS = {
         World("carried", "jumps that last 0.8 to 2.5 s: the robot is carried", carried),
         World("spinning", "a wheel spins on the spot for 0.3 to 1.5 s", spinning),
         World("glitches", "0.5 to 5 % bad poses, single or in bursts", glitches),
-        World("rough_floor", "headings wander by 4 to 10 mrad per root metre, ways hardly", rough_floor),
+        World(
+            "rough_floor",
+            "headings wander by 4 to 10 mrad per root metre, ways hardly",
+            rough_floor,
+        ),
         World("tails", "noise of the reference with t2 tails", always(noise="t2")),
         World("late_start", "wheels turn 2 to 5 s before the first pose", late_start),
         World("moving_start", "the log begins and ends in motion", moving_start),
