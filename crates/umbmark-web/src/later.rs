@@ -50,11 +50,10 @@ mod tests {
 
     #[test]
     fn others_go_on_without_it_until_they_wait() {
-        let later = Later::default();
+        let later = &Later::default();
         let (go, gate) = channel();
         std::thread::scope(|scope| {
-            let work = || gate.recv().map_err(Trouble::because);
-            scope.spawn(|| later.make(work));
+            scope.spawn(move || later.make(move || gate.recv().map_err(Trouble::because)));
             later.wait(Some(Duration::from_millis(1)));
             assert_eq!(later.found(), None);
             go.send(7).unwrap();
