@@ -6,6 +6,7 @@ import html
 import inspect
 import math
 import re
+import threading
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 
 Interval: TypeAlias = tuple[float, float]
 Row: TypeAlias = dict[str, Any]
+
+_making = threading.Lock()
+"""msgspec learns what a class is made of when it first makes one, and crashes if two threads do so at once."""
 
 
 class Frame:
@@ -106,7 +110,9 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
     @classmethod
     def _of(cls, document: str, **beside: object) -> Self:
         """Make a result of a document, and of what stands beside it."""
-        return msgspec.convert({**msgspec.json.decode(document), **beside}, cls)
+        fields = {**msgspec.json.decode(document), **beside}
+        with _making:
+            return msgspec.convert(fields, cls)
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
