@@ -25,7 +25,7 @@ Interval: TypeAlias = tuple[float, float]
 Row: TypeAlias = dict[str, Any]
 
 _making = threading.Lock()
-"""msgspec learns what a class is made of when it first makes one, and crashes if two threads do so at once."""
+"""msgspec crashes where two threads make the first result of a class at once."""
 
 
 class Frame:
