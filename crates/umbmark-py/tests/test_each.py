@@ -1,5 +1,7 @@
 """Many robots by one call: what one call after the other gives, and one frame of all."""
 
+import subprocess
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -138,3 +140,36 @@ def test_a_single_robot_is_not_many(robots: dict[str, umbmark.Dataset]) -> None:
             umbmark.each(umbmark.score, single)
     with pytest.raises(ValueError, match="workers must be between 1 and"):
         umbmark.each(umbmark.score, robots, workers=0)
+
+
+FROM_THREADS = """
+import sys
+import threading
+
+import umbmark
+
+data = umbmark.simulate(umbmark.Model(), runs=2, reference_rate_hz=0, seed=1)
+sys.setswitchinterval(1e-6)
+gate = threading.Barrier(4)
+made = []
+
+
+def make():
+    gate.wait()
+    made.append(umbmark.inspect(data))
+
+
+threads = [threading.Thread(target=make) for _ in range(4)]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+print(len(made))
+"""
+
+
+def test_the_first_results_of_a_class_may_be_made_by_several_threads() -> None:
+    for _ in range(3):
+        command = [sys.executable, "-c", FROM_THREADS]
+        ended = subprocess.run(command, capture_output=True, text=True)
+        assert (ended.returncode, ended.stdout) == (0, "4\n"), ended.stderr

@@ -4,7 +4,6 @@ import json
 import pickle
 import re
 import subprocess
-import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -35,39 +34,6 @@ def test_a_result_without_a_table_of_its_own_has_that_of_its_first_list_or_of_it
     empty = Whole._of('{"seed": 1, "parts": []}')
     assert empty.table() == [{"seed": 1}]
     assert "<td>1</td>" in empty._repr_html_()
-
-
-FROM_THREADS = """
-import sys
-import threading
-
-import umbmark
-
-data = umbmark.simulate(umbmark.Model(), runs=2, reference_rate_hz=0, seed=1)
-sys.setswitchinterval(1e-6)
-gate = threading.Barrier(4)
-made = []
-
-
-def make():
-    gate.wait()
-    made.append(umbmark.inspect(data))
-
-
-threads = [threading.Thread(target=make) for _ in range(4)]
-for thread in threads:
-    thread.start()
-for thread in threads:
-    thread.join()
-print(len(made))
-"""
-
-
-def test_the_first_results_of_a_class_may_be_made_by_several_threads() -> None:
-    for _ in range(3):
-        command = [sys.executable, "-c", FROM_THREADS]
-        ended = subprocess.run(command, capture_output=True, text=True)
-        assert (ended.returncode, ended.stdout) == (0, "4\n"), ended.stderr
 
 
 @pytest.fixture(scope="module")

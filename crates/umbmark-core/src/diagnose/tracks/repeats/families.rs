@@ -17,7 +17,7 @@ const DECAYS: [f64; 7] = [3.0, 6.0, 12.0, 20.0, 35.0, 60.0, 100.0];
 const NEAR: [f64; 5] = [0.1, 0.2, 0.35, 0.6, 1.0];
 /// Sizes of what a robot does, as shares of the largest.
 const SHARES: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
-/// Where a floor may change, as shares of the extent of the room along a direction, and within which way it does \[m\].
+/// Where one floor may end and another begin, as shares of the room's extent along a direction; half of the width of the border \[m\].
 const BORDERS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 const BORDER: f64 = 0.05;
 /// Minimum distance between humps on the floor \[m\], and their maximum number.
