@@ -456,8 +456,7 @@ mod tests {
         assert!(off.abs() < 2.5 * variance.sqrt() && variance.sqrt() < 3e-4, "{off} {}", variance.sqrt());
     }
 
-    /// Eight laps, on which the heading drifts so far that runs linearised about the start of the fit would hold it there: E_d would be 3
-    /// standard errors off in the quadratic mean.
+    /// Eight laps on which the heading drifts.
     #[test]
     fn intervals_hold_where_the_heading_drifts_on_a_long_way() {
         let robot = Robot::labmate();
