@@ -386,6 +386,7 @@ mod tests {
     use crate::diagnose::first_model;
     use crate::drive::Robot;
     use crate::path::{Path, SpeedProfile, WAYPOINTS};
+    use crate::random::Stream;
 
     /// Fifty-six corners turn by 252 degrees more than the nominal robot believes, no heading says so, and rows are missing midway.
     #[test]
@@ -456,24 +457,38 @@ mod tests {
         assert!(off.abs() < 2.5 * variance.sqrt() && variance.sqrt() < 3e-4, "{off} {}", variance.sqrt());
     }
 
-    /// Eight laps on which the heading drifts.
+    /// Eight laps on a floor that turns the robot at random, and does not change its way. Fits that linearised the runs about their start only had
+    /// E_d 2.1 standard errors off in the quadratic mean; these, 0.9.
     #[test]
     fn intervals_hold_where_the_heading_drifts_on_a_long_way() {
         let robot = Robot::labmate();
-        let mut truth = Model::new(&robot);
-        truth.set("wheel_noise", "k_sqrt_m", 1.5e-3).unwrap();
         let laps: Vec<f64> = [[2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 0.0]].repeat(8).concat();
         let path = Path::new(&WAYPOINTS, &laps, SpeedProfile::default()).unwrap();
         let mut asked = Model::new(&robot);
         for effect in ["wheel_diameter_ratio", "wheelbase", "scale"] {
             asked.add(effect).unwrap().free = true;
         }
+        let sets = 8;
         let mut squares = 0.0;
-        for seed in 0..8 {
-            let observed = Observed::new(&watched_on(&path, &truth, 1, seed), &robot).unwrap();
+        for seed in 0..sets {
+            let mut data = watched_on(&path, &Model::new(&robot), 1, seed);
+            for (run, log) in data.runs.iter_mut().filter_map(|run| run.log.as_mut()).enumerate() {
+                let mut random = Stream::new(seed, 1, run as u64);
+                let (mut off, mut last, mut at) = (0.0, [0.0; 2], [0.0; 2]);
+                for pose in &mut log.reference {
+                    let (x, y) = (pose.x - last[0], pose.y - last[1]);
+                    off += 7e-3 * libm::hypot(x, y).sqrt() * random.normal();
+                    let (sine, cosine) = libm::sincos(off);
+                    at = [at[0] + cosine * x - sine * y, at[1] + sine * x + cosine * y];
+                    last = [pose.x, pose.y];
+                    (pose.x, pose.y) = (at[0] + 3e-4 * random.normal(), at[1] + 3e-4 * random.normal());
+                    pose.heading = pose.heading.map(|heading| heading + off + 1e-3 * random.normal());
+                }
+            }
+            let observed = Observed::new(&data, &robot).unwrap();
             let fitted = observed.fit(&asked, &Noise::default(), &[]).unwrap();
             let off = fitted.model.get("wheel_diameter_ratio", "e_d").unwrap() - 1.0;
-            squares += off * off / fitted.covariance.unwrap()[(0, 0)] / 8.0;
+            squares += off * off / fitted.covariance.unwrap()[(0, 0)] / sets as f64;
         }
         assert!(squares.sqrt() < 1.6, "{}", squares.sqrt());
     }
