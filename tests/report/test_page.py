@@ -181,22 +181,37 @@ def test_keyboard_and_reader_find_their_way(browser: webdriver.Chrome, pages: Pa
     assert (jumps, lost) == (0, 0)
 
 
-def test_two_million_samples_open_in_three_seconds(
-    browser: webdriver.Chrome, tmp_path: Path
-) -> None:
-    """200 runs of 10 000 samples each, and a spike in one of them."""
-    data, model, page = tmp_path / "big", tmp_path / "model.toml", tmp_path / "big.html"
+def simulate_page(folder: Path, runs: int, encoder_rate: int) -> tuple[Path, int]:
+    """The page of runs in both senses, and the number of samples of them all."""
+    data, model, page = folder / "data", folder / "model.toml", folder / "page.html"
     noisy = ["--wheel-noise", "0.001", "--ed", "1.002"]
-    rate = ["--encoder-rate", "100", "--reference-rate", "2"]
-    umbmark("simulate", "--runs", "100", *rate, *noisy, "-o", data)
+    rate = ["--encoder-rate", str(encoder_rate), "--reference-rate", "2"]
+    umbmark("simulate", "--runs", str(runs), *rate, *noisy, "-o", data)
     samples = sum(len(file.read_text().splitlines()) - 1 for file in (data / "runs").iterdir())
-    assert samples >= 2_000_000
     model.write_text('[[effect]]\nname = "wheel_diameter_ratio"\ne_d = 1.002\nfree = true\n')
     umbmark("report", data, "--model", model, "--return-poses", "-o", page, "-n", "200")
-    assert page.stat().st_size < 5e6
+    return page, samples
+
+
+def seconds_to_first_figures(browser: webdriver.Chrome, page: Path) -> float:
     began = time.monotonic()
     open_page_without_drawing(browser, page)
     wait_for(browser, "return document.querySelectorAll('.plot[data-drawn]').length >= 2")
-    assert time.monotonic() - began < 3
-    open_page(browser, page)
+    return time.monotonic() - began
+
+
+def test_two_million_samples_open_nearly_as_fast_as_ten_thousand(
+    browser: webdriver.Chrome, tmp_path: Path
+) -> None:
+    """200 runs of 10 000 samples each, and a spike in one of them; both pages in turn."""
+    for name in ["small", "large"]:
+        (tmp_path / name).mkdir()
+    small, few = simulate_page(tmp_path / "small", 5, 10)
+    large, many = simulate_page(tmp_path / "large", 100, 100)
+    assert many >= 2_000_000 >= 100 * few
+    assert large.stat().st_size < 5e6
+    times = [[seconds_to_first_figures(browser, page) for page in (small, large)] for _ in range(5)]
+    fastest = [min(column) for column in zip(*times, strict=True)]
+    assert fastest[1] < 4 * fastest[0]
+    open_page(browser, large)
     assert complaints(browser) == []
