@@ -20,6 +20,7 @@ mod counts_factor;
 mod disturbances;
 mod edges;
 mod faults;
+mod increments;
 mod misread;
 mod notices;
 mod one_way;
@@ -225,6 +226,7 @@ impl Setup {
             one_way::counted_up(&seen.iter().map(|seen| (seen.log, alone(seen))).collect::<Vec<_>>(), robot)
         });
         if let Some(fault) = standing {
+            let fault = increments::found(&seen, robot).unwrap_or(fault);
             return Setup { faults: vec![fault], runs: seen.iter().map(named).collect(), ..Setup::default() };
         }
         let pooled = |seen: &[Seen]| -> Vec<Beside> {
@@ -234,6 +236,9 @@ impl Setup {
         let alone = |seen: &Seen| clock::beside(&seen.windows, &seen.rolled, &seen.late);
         let by_run: Vec<(&str, Vec<Beside>)> = seen.iter().map(|seen| (seen.run.name.as_str(), alone(seen))).collect();
         let mut faults = faults::differing(&by_run, (&faults, reading), robot).unwrap_or(faults);
+        if faults.iter().any(|fault| matches!(fault, Fault::OtherMotion { .. })) {
+            faults = increments::found(&seen, robot).map_or(faults, |fault| vec![fault]);
+        }
         if faults == [Fault::PositionsExchanged] {
             faults.extend(faults::sizes(&Agreement::without_drift(&pooled(&seen), reading, wheelbase), robot));
         }

@@ -3,6 +3,7 @@
 use super::agreement::{Agreement, Beside, Reading};
 use super::counts_factor::CountsFactor;
 use crate::drive::{DriveKind, Robot};
+use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// If the misfit exceeds this, other readings are tried; one is accepted if its misfit is smaller by the second factor.
@@ -15,8 +16,18 @@ const NOTHING: f64 = 0.75;
 const LEAST_GAIN: f64 = 0.2;
 /// If the misfit of distance or rotation exceeds this, its scale is meaningless.
 pub(super) const VAGUE: f64 = 0.5;
-/// Units in which lengths are written by mistake: how many of them a metre has.
-const UNITS: [(f64, &str); 4] = [(1000.0, "mm"), (100.0, "cm"), (39.37, "inches"), (3.2808, "feet")];
+/// Lengths that are so many times too large: their unit, and the one that their column names.
+const UNITS: [(f64, &str, &str); 7] = [
+    (1000.0, "mm", "metres"),
+    (100.0, "cm", "metres"),
+    (39.37, "inches", "metres"),
+    (3.2808, "feet", "metres"),
+    (0.1, "cm", "mm"),
+    (0.01, "metres", "cm"),
+    (0.001, "metres", "mm"),
+];
+/// Headings that are read as degrees are below this, over a few turns, where they are radians \[rad\].
+const FEW_DEGREES: f64 = 0.6;
 /// Counts or lengths that are off by more than this factor, or the inverse, are no robot's.
 const MOST_SCALE: f64 = 3.0;
 /// Minimum number of windows for a run to be examined by itself.
@@ -60,10 +71,16 @@ pub enum Fault {
     PositionsExchanged,
     /// Headings are in degrees.
     HeadingInDegrees,
+    /// Headings are in radians.
+    HeadingInRadians,
+    /// Counts are those since the row before.
+    Increments,
     /// Lengths of the reference are in another unit than their column says.
     LengthsIn {
         /// Its name.
         unit: &'static str,
+        /// That of their column.
+        named: &'static str,
         /// Way by the reference over way by the wheels.
         ratio: f64,
     },
@@ -154,9 +171,13 @@ impl Fault {
                 "x and y of the measured track are exchanged: it is mirrored, and a quarter turn from the headings".into()
             }
             Fault::HeadingInDegrees => "the measured heading is in degrees, not in radians".into(),
-            Fault::LengthsIn { unit, ratio } => {
+            Fault::HeadingInRadians => "the measured heading is in radians, not in degrees".into(),
+            Fault::Increments => {
+                "the counts are those since the row before, and not those since the beginning: their running sums agree with the reference".into()
+            }
+            Fault::LengthsIn { unit, named, ratio } => {
                 format!(
-                    "the measured positions are in {unit}, not in metres: the track is {ratio:.4} times as long as the wheels rolled"
+                    "the measured positions are in {unit}, not in {named}: the track is {ratio:.4} times as long as the wheels rolled"
                 )
             }
             Fault::OtherScale { ratio } => {
@@ -184,6 +205,16 @@ impl Fault {
                 "the return headings are in degrees, not in radians: read as degrees they agree with the return positions, read as radians they do not".into()
             }
         }
+    }
+
+    /// By what headings must be multiplied, with these faults.
+    fn heading_factor(faults: &[Fault]) -> f64 {
+        let of = |fault: &Fault| match fault {
+            Fault::HeadingInDegrees => Some(1.0_f64.to_radians()),
+            Fault::HeadingInRadians => Some(1.0_f64.to_degrees()),
+            _ => None,
+        };
+        faults.iter().find_map(of).unwrap_or(1.0)
     }
 
     /// What to do, with the line of robot.toml where there is one.
@@ -216,7 +247,12 @@ impl Fault {
             Fault::PositionsExchanged => "exchange the columns x_ref and y_ref, or their names".into(),
             Fault::HeadingInDegrees => "call the column theta_ref_deg (of a gyro, gyro_deg_s)".into(),
             Fault::LengthsIn { unit: unit @ ("mm" | "cm"), .. } => format!("call the columns x_ref_{unit} and y_ref_{unit}"),
+            Fault::LengthsIn { unit: "metres", named, .. } => {
+                format!("call the columns x_ref_m and y_ref_m (or, if the sizes under [robot] in robot.toml are in {named}, write them in metres)")
+            }
             Fault::LengthsIn { .. } => "convert the columns to metres".into(),
+            Fault::HeadingInRadians => "call the column theta_ref_rad (of a gyro, gyro_rad_s)".into(),
+            Fault::Increments => "write the running sum of its counts into each column ticks_*".into(),
             Fault::OtherScale { .. } => "check the unit of the positions and [robot] in robot.toml".into(),
             Fault::Counts(factor) => factor.remedy(),
             Fault::Standing { .. } => {
@@ -263,6 +299,7 @@ impl Fault {
             Fault::PositionsMirrored => "change the sign of y".into(),
             Fault::PositionsExchanged => "exchange the columns of x and y".into(),
             Fault::HeadingInDegrees => "write the measured heading in radians".into(),
+            Fault::HeadingInRadians => "write the measured heading in degrees".into(),
             _ => "check their columns".into(),
         }
     }
@@ -286,7 +323,7 @@ pub(super) fn differing(
     (together, reading): (&[Fault], Reading),
     robot: &Robot,
 ) -> Option<Vec<Fault>> {
-    if runs.len() < 2 || together.contains(&Fault::HeadingInDegrees) {
+    if runs.len() < 2 || Fault::heading_factor(together) != 1.0 {
         return None;
     }
     let wheelbase = robot.drive.wheelbase();
@@ -301,9 +338,8 @@ pub(super) fn differing(
     let (mut strange, mut least): (Vec<String>, f64) = (Vec::new(), f64::INFINITY);
     for (name, own) in runs.iter().filter(|(_, own)| own.len() >= FEWEST) {
         let (faults, own_reading) = look(own, robot);
-        let in_degrees = || own.iter().map(|(window, rolled)| (window.in_degrees(), *rolled)).collect::<Vec<Beside>>();
-        let read = if faults.contains(&Fault::HeadingInDegrees) { &in_degrees() } else { own };
-        let found = Agreement::without_drift(read, own_reading, wheelbase);
+        let read = scaled(own, Fault::heading_factor(&faults));
+        let found = Agreement::without_drift(&read, own_reading, wheelbase);
         if found.shown != [true; 2] || found.misfits.iter().any(|misfit| *misfit > DOUBTFUL) {
             // Courses of single positions turn by chance where the robot is slow: then the way says more than the turns.
             let misfit = match own.iter().all(|(window, _)| window.with_heading) {
@@ -358,20 +394,26 @@ pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
     let differential = robot.drive.kind().has_axle_wheels();
     // On long parallel legs, headings of the wrong sign fit well but for rotations that seem to be the wheels' fault.
     let accuses = given.shown[1] && given.turn[0] < -LEAST_GAIN;
-    let (mut best, mut reading, mut degrees) = (given, Reading::default(), false);
+    let (mut best, mut reading, mut unit) = (given, Reading::default(), None);
     if accuses || doubt(&given) > DOUBTFUL {
-        let in_degrees: Vec<Beside> = windows.iter().map(|(window, rolled)| (window.in_degrees(), *rolled)).collect();
-        let as_degrees = windows.iter().any(|(window, _)| window.heading.abs() > 7.0);
-        for (opposed, clockwise, degree) in (0..8)
-            .map(|k| (k & 1 != 0, k & 2 != 0, k & 4 != 0))
-            .filter(|(o, _, d)| (differential || !o) && (as_degrees || !d))
-        {
-            let tried = Reading { opposed, clockwise };
-            let found = of(if degree { &in_degrees } else { windows }, tried);
-            // If the given reading agrees, another one is more likely only if it agrees as well and its sizes are possible.
-            let clearly = if given.misfit > DOUBTFUL { CLEARLY * doubt(&given) } else { DOUBTFUL };
-            if doubt(&found) < clearly && doubt(&found) < doubt(&best) {
-                (best, reading, degrees) = (found, tried, degree);
+        let largest = windows.iter().map(|(window, _)| window.heading.abs()).fold(0.0, f64::max);
+        let other_unit = match by_course {
+            false if largest > 7.0 => Some(Fault::HeadingInDegrees),
+            false if largest < FEW_DEGREES => Some(Fault::HeadingInRadians),
+            _ => None,
+        };
+        for own in std::iter::once(None).chain(other_unit.map(Some)) {
+            let read = scaled(windows, Fault::heading_factor(own.as_slice()));
+            for tried in (0..4).map(|k| Reading { opposed: k & 1 != 0, clockwise: k & 2 != 0 }) {
+                if tried.opposed && !differential {
+                    continue;
+                }
+                let found = of(&read, tried);
+                // If the given reading agrees, another one is more likely only if it agrees as well and its sizes are possible.
+                let clearly = if given.misfit > DOUBTFUL { CLEARLY * doubt(&given) } else { DOUBTFUL };
+                if doubt(&found) < clearly && doubt(&found) < doubt(&best) {
+                    (best, reading, unit) = (found, tried, own.clone());
+                }
             }
         }
     }
@@ -383,10 +425,7 @@ pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
     if disagrees {
         return (vec![Fault::OtherMotion { misfit: best.misfit }], reading);
     }
-    let mut faults = Vec::new();
-    if degrees {
-        faults.push(Fault::HeadingInDegrees);
-    }
+    let mut faults: Vec<Fault> = unit.into_iter().collect();
     let turned = turned(&best, reading, robot.drive.kind());
     let headings_only = windows.iter().all(|(window, _)| window.headings_only);
     let opposite = |fault: &Fault| match fault {
@@ -443,12 +482,21 @@ pub(super) fn sizes(found: &Agreement, robot: &Robot) -> Vec<Fault> {
     }
     // The nominal diameter may be wrong too, but not by as much as units differ.
     vec![match unit_of(ratio) {
-        Some(unit) => Fault::LengthsIn { unit, ratio },
+        Some((unit, named)) => Fault::LengthsIn { unit, named, ratio },
         None => Fault::OtherScale { ratio },
     }]
 }
 
-/// The unit that makes lengths so many times too large.
-fn unit_of(ratio: f64) -> Option<&'static str> {
-    UNITS.into_iter().find(|(size, _)| (ratio / size - 1.0).abs() < 3.0 * NEAR).map(|(_, unit)| unit)
+/// The unit that makes lengths so many times too large, and the one that their column names.
+fn unit_of(ratio: f64) -> Option<(&'static str, &'static str)> {
+    let is_near = |size: f64| (ratio / size - 1.0).abs() < 3.0 * NEAR;
+    UNITS.into_iter().find(|(size, ..)| is_near(*size)).map(|(_, unit, named)| (unit, named))
+}
+
+/// Windows with headings multiplied by a factor.
+fn scaled(windows: &[Beside], factor: f64) -> Cow<'_, [Beside]> {
+    match factor {
+        1.0 => windows.into(),
+        _ => windows.iter().map(|(window, rolled)| (window.with_headings_times(factor), *rolled)).collect(),
+    }
 }

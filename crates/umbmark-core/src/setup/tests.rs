@@ -205,12 +205,29 @@ fn counters_of_one_channel_are_named_where_wheels_roll_backward_and_nowhere_else
     }
 }
 
+/// Each count less the one of the row before.
+#[test]
+fn counts_since_the_row_before_are_named() {
+    let steps = |counts: &[f64]| {
+        let before = std::iter::once(&0.0).chain(counts);
+        counts.iter().zip(before).map(|(count, before)| count - before).collect::<Vec<f64>>()
+    };
+    for (seed, driven) in [(40, driven::free as fn(f64, &mut Stream) -> driven::Driven), (41, driven::pursuing)] {
+        let mut runs = Drive { seed, driven, ..clean() }.runs();
+        for log in runs.iter_mut().filter_map(|run| run.log.as_mut()) {
+            (log.left, log.right) = (steps(&log.left), steps(&log.right));
+        }
+        assert_eq!(Setup::of(&runs, &robot(), None).faults, [Fault::Increments], "{seed}");
+    }
+}
+
 #[test]
 fn headings_and_positions_that_are_not_what_they_are_called_are_named() {
     let faults = |written| Drive { written, ..clean() }.found().faults;
     assert_eq!(faults(|x, y, heading| (x, y, -heading)), [Fault::HeadingClockwise]);
     assert_eq!(faults(|x, y, heading| (x, -y, heading)), [Fault::PositionsMirrored]);
     assert_eq!(faults(|x, y, heading| (x, y, heading.to_degrees())), [Fault::HeadingInDegrees]);
+    assert_eq!(faults(|x, y, heading| (x, y, heading.to_radians())), [Fault::HeadingInRadians]);
     assert_eq!(faults(|x, y, heading| (y, x, heading)), [Fault::PositionsExchanged]);
     let found = faults(|x, y, heading| (1e3 * y, 1e3 * x, heading));
     assert!(matches!(found[..], [Fault::PositionsExchanged, Fault::LengthsIn { unit: "mm", .. }]), "{found:?}");
@@ -220,13 +237,17 @@ fn headings_and_positions_that_are_not_what_they_are_called_are_named() {
     assert_eq!(mirrored, [Fault::Exchanged]);
     assert!(mirrored[0].remedy().contains("y_mirrored"));
     for (written, expected) in [
-        ((|x, y, heading| (1e3 * x, 1e3 * y, heading)) as fn(f64, f64, f64) -> (f64, f64, f64), "mm"),
-        (|x, y, heading| (1e2 * x, 1e2 * y, heading), "cm"),
-        (|x, y, heading| (39.37 * x, 39.37 * y, heading), "inches"),
-        (|x, y, heading| (3.2808 * x, 3.2808 * y, heading), "feet"),
+        ((|x, y, heading| (1e3 * x, 1e3 * y, heading)) as fn(f64, f64, f64) -> (f64, f64, f64), ("mm", "metres")),
+        (|x, y, heading| (1e2 * x, 1e2 * y, heading), ("cm", "metres")),
+        (|x, y, heading| (39.37 * x, 39.37 * y, heading), ("inches", "metres")),
+        (|x, y, heading| (3.2808 * x, 3.2808 * y, heading), ("feet", "metres")),
+        (|x, y, heading| (1e-1 * x, 1e-1 * y, heading), ("cm", "mm")),
+        (|x, y, heading| (1e-2 * x, 1e-2 * y, heading), ("metres", "cm")),
+        (|x, y, heading| (1e-3 * x, 1e-3 * y, heading), ("metres", "mm")),
     ] {
         let found = faults(written);
-        assert!(matches!(found[..], [Fault::LengthsIn { unit, .. }] if unit == expected), "{expected}: {found:?}");
+        let is_it = matches!(found[..], [Fault::LengthsIn { unit, named, .. }] if (unit, named) == expected);
+        assert!(is_it, "{expected:?}: {found:?}");
     }
     let found = faults(|x, y, heading| (8.0 * x, 8.0 * y, heading));
     assert!(matches!(found[..], [Fault::OtherScale { ratio }] if (ratio - 8.0).abs() < 0.1), "{found:?}");

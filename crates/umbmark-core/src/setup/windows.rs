@@ -33,9 +33,9 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// The same, if its headings are degrees.
-    pub fn in_degrees(&self) -> Window {
-        Window { heading: self.heading.to_radians(), turned: wrap(self.raw_turn.to_radians()), ..*self }
+    /// The same, if its headings are in another unit, which is so many radians.
+    pub fn with_headings_times(&self, factor: f64) -> Window {
+        Window { heading: factor * self.heading, turned: wrap(factor * self.raw_turn), ..*self }
     }
 }
 

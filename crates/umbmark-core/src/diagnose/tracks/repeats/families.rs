@@ -82,7 +82,7 @@ impl Laws {
                 |s, by| libm::exp(-s.time / by[0]),
             );
         }
-        self.add("the time in the run".into(), written("time"), &[Second, Metre], |s| s.time);
+        self.add("the time in the run".into(), written("time"), &[Second, Metre, Radian], |s| s.time);
         self.add("the square of the time in the run".into(), written("time^2"), &[Second, Metre], |s| s.time * s.time);
         for n in 1..=4 {
             let times = if n == 1 { String::new() } else { format!("{n} times ") };
@@ -116,9 +116,12 @@ impl Laws {
         self.add("the root of the speed".into(), written("sqrt(abs(speed))"), &[Metre], |s| s.speed.abs().sqrt());
         for share in SHARES {
             let v = share * fastest;
-            self.add_shaped("a speed above {c} m/s".into(), shaped(&above("abs(speed)"), v), &[Metre], |s, by| {
-                beyond(s.speed.abs(), by[0])
-            });
+            self.add_shaped(
+                "a speed above {c} m/s".into(),
+                shaped(&above("abs(speed)"), v),
+                &[Metre, Radian],
+                |s, by| beyond(s.speed.abs(), by[0]),
+            );
             self.add_shaped(
                 "the speed beyond {c} m/s".into(),
                 shaped("max(abs(speed) - c, 0)", v),
@@ -136,26 +139,15 @@ impl Laws {
                 |s, by| beyond(s.turn_rate.abs(), by[0]),
             );
             self.add_shaped(
-                "a turn rate above {c} rad/s, with its sense".into(),
-                shaped(&format!("sign(turn_rate) * {}", above("abs(turn_rate)")), w),
-                &[Radian],
-                |s, by| s.turn_rate.signum() * beyond(s.turn_rate.abs(), by[0]),
-            );
-            self.add_shaped(
                 "tanh(turn rate / {c} rad/s)".into(),
                 shaped("tanh(turn_rate / c)", w),
                 &[Second],
                 |s, by| libm::tanh(s.turn_rate / by[0]),
             );
         }
-        self.add("the sense of the turn".into(), written("sign(turn_rate)"), &[Radian], |s| s.turn_rate.signum());
-        self.add("the turn rate".into(), written("turn_rate"), &[Radian], |s| s.turn_rate);
         self.add("the size of the turn rate".into(), written("abs(turn_rate)"), &[Radian], |s| s.turn_rate.abs());
         self.add("the square of the turn rate".into(), written("turn_rate^2"), &[Radian], |s| {
             s.turn_rate * s.turn_rate
-        });
-        self.add("the turn rate times its size".into(), written("turn_rate * abs(turn_rate)"), &[Radian], |s| {
-            s.turn_rate * s.turn_rate.abs()
         });
         self.add("the speed times the turn rate".into(), written("speed * turn_rate"), &[Second], |s| {
             s.speed * s.turn_rate
@@ -301,16 +293,16 @@ impl Laws {
         }
     }
 
-    /// For each law per metre driven, the same per metre ahead.
-    pub fn add_ahead(&mut self) {
-        let own: Vec<usize> = (0..self.terms.len()).filter(|term| self.terms[*term].per == Per::Metre).collect();
+    /// For each law in proportion to a size, the same in proportion to it with its sign.
+    pub fn add_signed(&mut self, size: Per, signed: Per) {
+        let own: Vec<usize> = (0..self.terms.len()).filter(|term| self.terms[*term].per == size).collect();
         let first = self.terms.len();
         let place = |term: usize| own.iter().position(|other| *other == term).map(|place| first + place);
-        let ahead: Vec<Term> = own
+        let with_sign: Vec<Term> = own
             .iter()
-            .map(|term| Term { per: Per::Ahead, twin: self.terms[*term].twin.and_then(place), ..self.terms[*term] })
+            .map(|term| Term { per: signed, twin: self.terms[*term].twin.and_then(place), ..self.terms[*term] })
             .collect();
-        self.terms.extend(ahead);
+        self.terms.extend(with_sign);
     }
 
     fn add(

@@ -16,6 +16,9 @@ const ENOUGH_RUNS: usize = 4;
 /// applies to p of the flips: few runs, of which some carry most, have few flips.
 const PLAIN: f64 = 0.4;
 const SIZE_IF_PLAIN: f64 = 0.2;
+/// With this gain in held-out runs a law accounts for nearly all that is left. p by the noise model must then be below the first number, and
+/// `SIZE_IF_LOUD` applies.
+const NEARLY_ALL: (f64, f64) = (1e-3, 0.7);
 /// False-alarm rate by the noise model, and the factor by which correlated noise widens a heading drift against that model.
 const SIZE_BY_NOISE: f64 = 0.05;
 pub(super) const REMEMBERS: f64 = 2.6;
@@ -113,7 +116,8 @@ impl Repeated {
         let (by_noise, gain) = (self.p_by_noise(REMEMBERS), self.law.gain);
         let is_plain = gain >= PLAIN && self.p_by_noise(1.0) <= LOUD.0;
         let is_loud = by_noise <= LOUD.0 && gain >= LOUD.1;
-        let is_clear = (is_loud && self.p <= SIZE_IF_LOUD) || (is_plain && self.p <= SIZE_IF_PLAIN);
+        let is_nearly_all = self.p_by_noise(1.0) <= NEARLY_ALL.0 && gain >= NEARLY_ALL.1;
+        let is_clear = ((is_loud || is_nearly_all) && self.p <= SIZE_IF_LOUD) || (is_plain && self.p <= SIZE_IF_PLAIN);
         let is_certain = self.p <= SIZE && by_noise <= SIZE_BY_NOISE;
         gain >= least && (is_certain || (is_clear && self.runs >= ENOUGH_RUNS))
     }

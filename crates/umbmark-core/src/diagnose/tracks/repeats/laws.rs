@@ -56,8 +56,9 @@ impl Laws {
         let mut laws = Laws { functions: Vec::new(), reverses: extent.back > BACK * extent.way, terms: Vec::new() };
         laws.fill(&extent);
         if laws.reverses {
-            laws.add_ahead();
+            laws.add_signed(Per::Metre, Per::Ahead);
         }
+        laws.add_signed(Per::Radian, Per::Turned);
         laws
     }
 
@@ -128,14 +129,17 @@ impl Laws {
             (Motion::Yaw, Per::Metre) => (Target::HeadingPerMetre, ""),
             (Motion::Yaw, Per::Ahead) => (Target::HeadingPerMetre, "sign(speed) * "),
             (Motion::Yaw, Per::Radian) => (Target::TurnScale, "sign(turn_rate) * "),
+            (Motion::Yaw, Per::Turned) => (Target::TurnScale, ""),
             (Motion::Yaw, Per::Second) => (Target::HeadingPerSecond, ""),
             (Motion::Forward, Per::Metre) if self.reverses => (Target::ForwardScale, "sign(speed) * "),
             (Motion::Forward, Per::Metre | Per::Ahead) => (Target::ForwardScale, ""),
             (Motion::Forward, Per::Radian) => (Target::ForwardPerRadian, ""),
+            (Motion::Forward, Per::Turned) => (Target::ForwardPerRadian, "sign(turn_rate) * "),
             (Motion::Forward, Per::Second) => (Target::ForwardPerSecond, ""),
             (Motion::Sideways, Per::Metre) => (Target::SidewaysPerMetre, ""),
             (Motion::Sideways, Per::Ahead) => (Target::SidewaysPerMetre, "sign(speed) * "),
             (Motion::Sideways, Per::Radian) => (Target::SidewaysPerRadian, ""),
+            (Motion::Sideways, Per::Turned) => (Target::SidewaysPerRadian, "sign(turn_rate) * "),
             (Motion::Sideways, Per::Second) => (Target::SidewaysPerSecond, ""),
         };
         let sense = if with_sense { "direction * " } else { "" };

@@ -15,6 +15,8 @@ pub enum Per {
     Ahead,
     /// Rotation, either way.
     Radian,
+    /// Rotation to the left, and to the right against it.
+    Turned,
 }
 
 impl Per {
@@ -25,6 +27,7 @@ impl Per {
             Per::Metre => "metre",
             Per::Ahead => "metre ahead or back, against each other",
             Per::Radian => "radian turned",
+            Per::Turned => "radian to the left or right, against each other",
         }
     }
 
@@ -34,6 +37,7 @@ impl Per {
             Per::Metre => step.way,
             Per::Ahead => step.way * step.speed.signum(),
             Per::Radian => step.rotation.abs(),
+            Per::Turned => step.rotation,
         }
     }
 }
