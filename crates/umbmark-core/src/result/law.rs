@@ -36,9 +36,9 @@ pub struct UnlistedLaw {
     pub parameters: Option<Keyed<Option<f64>>>,
     /// What the formula acts on.
     pub acts_on: Option<&'static str>,
-    /// "forward", "sideways" or "yaw".
+    /// "forward", "sideways" or "yaw", or "left wheel" or "right wheel".
     pub motion: &'static str,
-    /// What the motion is in proportion to: "second", "metre" or "radian turned".
+    /// What the motion is in proportion to: "second", "metre", "radian turned", or "metre that it rolls", of a wheel.
     pub per: &'static str,
     /// The law in words.
     pub meaning: String,

@@ -47,7 +47,7 @@ pub fn what_repeats(
 ) -> Option<Repeated> {
     let chain = model.chain();
     let steps: Vec<Vec<TrackStep>> = observed.runs.par_iter().map(|run| steps(run, &chain)).collect();
-    let laws = Laws::of(&steps, observed.robot.drive.wheelbase());
+    let laws = Laws::of(&steps, &observed.robot);
     let runs = observed.runs.par_iter().zip(own).zip(&steps).enumerate();
     let sums = runs.flat_map_iter(|(index, ((run, own), steps))| of_run(index, run, own, &laws, steps, noise));
     let sums: Vec<Sums> = sums.collect();
@@ -151,7 +151,7 @@ mod tests {
         let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
         let chain = model.chain();
         let steps: Vec<Vec<TrackStep>> = observed.runs.iter().map(|run| steps(run, &chain)).collect();
-        let laws = Laws::of(&steps, observed.robot.drive.wheelbase());
+        let laws = Laws::of(&steps, &observed.robot);
         for (words, per, motion, target, formula) in [
             ("a wave of 2 times the heading", "metre", 2, Target::HeadingPerMetre, "cos(2 * heading)"),
             ("the square of the speed", "metre", 1, Target::SidewaysPerMetre, "speed^2"),
@@ -201,8 +201,8 @@ mod tests {
         let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
         let chain = model.chain();
         let steps: Vec<Vec<TrackStep>> = observed.runs.iter().map(|run| steps(run, &chain)).collect();
-        let laws = Laws::of(&steps, observed.robot.drive.wheelbase());
-        let (mut written, mut lost) = (0, Vec::new());
+        let laws = Laws::of(&steps, &observed.robot);
+        let (mut written, mut of_wheels, mut lost) = (0, 0, Vec::new());
         for term in 0..laws.terms.len() {
             let terms: Vec<usize> =
                 std::iter::once(term).chain(laws.terms[term].twin.filter(|twin| *twin > term)).collect();
@@ -216,6 +216,7 @@ mod tests {
                     continue;
                 };
                 written += 1;
+                of_wheels += usize::from(laws.acts_on(term, motion).ends_with("wheel"));
                 assert!(observed.tracks().all(|track| track.check(&formula).is_ok()), "{}", laws.words(term));
                 let numbers: Vec<usize> = (0..sizes.len()).collect();
                 let derivatives = observed.columns(&formula, &numbers);
@@ -242,7 +243,7 @@ mod tests {
                 }
             }
         }
-        assert!(written > 500, "{written}");
+        assert!(written > 500 && of_wheels > 20, "{written}, {of_wheels}");
         assert!(lost.len() < written / 10, "{} of {written}: {:#?}", lost.len(), &lost);
     }
 

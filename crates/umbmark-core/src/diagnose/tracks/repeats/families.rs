@@ -103,7 +103,6 @@ impl Laws {
             }
         }
         self.of_motion(extent);
-        self.of_wheels(extent.wheelbase);
         self.of_place(extent);
     }
 
@@ -211,15 +210,41 @@ impl Laws {
         }
     }
 
-    /// A wheel that rolls further, or less far, backward than forward.
-    fn of_wheels(&mut self, wheelbase: f64) {
-        for (sign, side, name) in [("+", -1.0, "left"), ("-", 1.0, "right")] {
-            self.add_shaped(
-                format!("how fast the {name} wheel rolls backward"),
-                (format!("max(-speed {sign} turn_rate * c, 0)"), vec![(SHAPE, 0.5 * wheelbase)]),
-                &[Per::Second],
-                move |s, by| (-s.speed - side * s.turn_rate * by[0]).max(0.0),
+    /// What two wheels on an axle do: they roll against each other, or one of them rolls further, or less far, by its own speed, backward, or
+    /// as it warms up.
+    pub fn of_wheels(&mut self, extent: &Extent) {
+        let arm = 0.5 * extent.wheelbase;
+        self.add(
+            "whether the wheels roll against each other".into(),
+            written(format!("(1 - sign(speed^2 - ({arm:.4} * turn_rate)^2)) / 2")),
+            &[Per::Radian],
+            move |s| 0.5 * (1.0 - (s.speed.powi(2) - (arm * s.turn_rate).powi(2)).signum()),
+        );
+        let fastest = extent.speed.max(arm * extent.turn_rate);
+        for (per, side, sign) in [(Per::LeftWheel, -arm, "-"), (Per::RightWheel, arm, "+")] {
+            let speed = move |s: &TrackStep| s.speed + side * s.turn_rate;
+            let text = format!("speed {sign} {arm:.4} * turn_rate");
+            self.add(
+                "whether it rolls backward".into(),
+                written(format!("(1 - sign({text})) / 2")),
+                &[per],
+                move |s| 0.5 * (1.0 - speed(s).signum()),
             );
+            self.add("its own speed".into(), written(format!("abs({text})")), &[per], move |s| speed(s).abs());
+            self.add("the square of its own speed".into(), written(format!("({text})^2")), &[per], move |s| {
+                speed(s).powi(2)
+            });
+            for share in SHARES {
+                let formula = shaped(&above(&format!("abs({text})")), share * fastest);
+                self.add_shaped("a speed of its own above {c} m/s".into(), formula, &[per], move |s, by| {
+                    beyond(speed(s).abs(), by[0])
+                });
+            }
+            self.add("the time in the run".into(), written("time"), &[per], |s| s.time);
+            for c in DECAYS {
+                let words = "what dies away within {c} s of the start".into();
+                self.add_shaped(words, shaped("exp(-time / c)", c), &[per], |s, by| libm::exp(-s.time / by[0]));
+            }
         }
     }
 

@@ -64,7 +64,7 @@ pub fn front(
             number: 0,
             length: formula.map_or(usize::MAX, |formula| formula.length()),
             model,
-            acts_on: motion.name(),
+            acts_on: laws.acts_on(pick.term, motion),
             per: laws.terms[pick.term].per.name(),
             with_sense: pick.with_sense,
             follows: laws.words(pick.term).to_owned(),

@@ -47,7 +47,7 @@ pub struct UnlistedLaw {
     pub number: usize,
     /// A model that holds it alone, with start values, where it can be written as a formula.
     pub model: Option<Model>,
-    /// What it acts on: "forward", "sideways" or "yaw".
+    /// What it acts on: "forward", "sideways", "yaw", "left wheel" or "right wheel".
     pub acts_on: &'static str,
     /// What it is in proportion to: "second", "metre" or "radian turned".
     pub per: &'static str,

@@ -45,16 +45,23 @@ pub struct Laws {
     pub(super) functions: Vec<Function>,
     /// Whether some runs drive back.
     reverses: bool,
+    /// Nominal distance of the wheels \[m\].
+    wheelbase: f64,
     /// Each with three motions.
     pub terms: Vec<Term>,
 }
 
 impl Laws {
-    /// Those of the steps of some runs, of a robot whose wheels are so far from each other \[m\].
-    pub fn of(steps: &[Vec<TrackStep>], wheelbase: f64) -> Laws {
+    /// Those of the steps of some runs of a robot.
+    pub fn of(steps: &[Vec<TrackStep>], robot: &Robot) -> Laws {
+        let wheelbase = robot.drive.wheelbase();
         let extent = Extent::of(steps, wheelbase);
-        let mut laws = Laws { functions: Vec::new(), reverses: extent.back > BACK * extent.way, terms: Vec::new() };
+        let reverses = extent.back > BACK * extent.way;
+        let mut laws = Laws { functions: Vec::new(), reverses, wheelbase, terms: Vec::new() };
         laws.fill(&extent);
+        if robot.drive.kind().has_axle_wheels() {
+            laws.of_wheels(&extent);
+        }
         if laws.reverses {
             laws.add_signed(Per::Metre, Per::Ahead);
         }
@@ -68,12 +75,21 @@ impl Laws {
         let words: Vec<&str> = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').collect();
         let known = |word: &&str| Formula::variables().iter().any(|variable| variable.name == *word);
         let by = words.into_iter().find(known);
-        let motion = motion.name();
+        let motion = self.acts_on(term, motion).replace(' ', "_");
         match by {
             Some("time" | "distance") if text.contains("pi") => format!("periodic_{motion}"),
             Some("x" | "y") => format!("{motion}_by_place"),
             Some(variable) => format!("{motion}_by_{variable}"),
             None => format!("steady_{motion}"),
+        }
+    }
+
+    /// What a term acts on: a motion of the robot, or a wheel.
+    pub fn acts_on(&self, term: usize, motion: Motion) -> &'static str {
+        match self.terms[term].per {
+            Per::LeftWheel => "left wheel",
+            Per::RightWheel => "right wheel",
+            _ => motion.name(),
         }
     }
 
@@ -126,6 +142,9 @@ impl Laws {
     ) -> Option<Model> {
         let about = self.terms[term];
         let (target, factor) = match (motion, about.per) {
+            (Motion::Forward, Per::LeftWheel) => (Target::LeftWheelScale, ""),
+            (Motion::Forward, Per::RightWheel) => (Target::RightWheelScale, ""),
+            (_, Per::LeftWheel | Per::RightWheel) => return None,
             (Motion::Yaw, Per::Metre) => (Target::HeadingPerMetre, ""),
             (Motion::Yaw, Per::Ahead) => (Target::HeadingPerMetre, "sign(speed) * "),
             (Motion::Yaw, Per::Radian) => (Target::TurnScale, "sign(turn_rate) * "),
@@ -165,7 +184,7 @@ impl Laws {
         &self.functions[self.terms[term].function].words
     }
 
-    /// The columns of some terms for each motion in turn, in the [`steps`] of a run.
+    /// The columns of some terms for each motion in turn, in the [`steps`] of a run; a wheel has one, and nothing for the other motions.
     pub fn columns(&self, terms: &[usize], run: &ObservedRun, steps: &[TrackStep]) -> Vec<Column> {
         let shapes: Vec<Vec<f64>> = terms.iter().map(|term| self.shapes(*term)).collect();
         let shaped: Vec<(usize, &[f64])> = terms.iter().copied().zip(shapes.iter().map(Vec::as_slice)).collect();
@@ -174,19 +193,19 @@ impl Laws {
 
     /// The same of terms with the numbers that shape each.
     pub fn shaped_columns(&self, terms: &[(usize, &[f64])], run: &ObservedRun, steps: &[TrackStep]) -> Vec<Column> {
-        let own: Vec<(Term, &[f64])> = terms.iter().map(|(term, by)| (self.terms[*term], *by)).collect();
-        let mut sums: [Vec<f64>; 5] = std::array::from_fn(|_| vec![0.0; own.len()]);
-        let mut columns = vec![vec![[0.0; 3]; run.blocks.len()]; 3 * own.len()];
-        let mut values = vec![0.0; own.len()];
+        let own_terms: Vec<(Term, &[f64])> = terms.iter().map(|(term, by)| (self.terms[*term], *by)).collect();
+        let mut sums: [Vec<f64>; 5] = std::array::from_fn(|_| vec![0.0; own_terms.len()]);
+        let mut columns = vec![vec![[0.0; 3]; run.blocks.len()]; 3 * own_terms.len()];
+        let mut values = vec![0.0; own_terms.len()];
         let mut next = 0;
         for (block, about) in run.blocks.iter().enumerate() {
             while let Some(step) = steps.get(next).filter(|step| step.block == block) {
                 let mut last: (usize, &[f64], f64) = (usize::MAX, &[], 0.0);
-                for (value, (term, by)) in values.iter_mut().zip(&own) {
+                for (value, (term, by)) in values.iter_mut().zip(&own_terms) {
                     if last.0 != term.function || last.1 != *by {
                         last = (term.function, by, (self.functions[term.function].value)(step, by));
                     }
-                    *value = last.2 * term.per.of(step);
+                    *value = last.2 * term.per.of(step, self.wheelbase);
                 }
                 let (sine, cosine) = libm::sincos(step.middle.heading);
                 for (sum, by) in sums.iter_mut().zip([cosine, sine, step.middle.x, step.middle.y, 1.0]) {
@@ -199,6 +218,14 @@ impl Laws {
                 own[0][block] = [cosine, sine, 0.0];
                 own[1][block] = [-sine, cosine, 0.0];
                 own[2][block] = [y - about.place.y * one, about.place.x * one - x, one];
+                // A wheel that rolls further moves the middle of the axle by half of that, and turns the robot away from itself.
+                let turns = match own_terms[term].0.per {
+                    Per::LeftWheel => -1.0 / self.wheelbase,
+                    Per::RightWheel => 1.0 / self.wheelbase,
+                    _ => continue,
+                };
+                own[0][block] = std::array::from_fn(|k| 0.5 * own[0][block][k] + turns * own[2][block][k]);
+                (own[1][block], own[2][block]) = ([0.0; 3], [0.0; 3]);
             }
         }
         columns

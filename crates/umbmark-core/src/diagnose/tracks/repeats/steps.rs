@@ -17,6 +17,10 @@ pub enum Per {
     Radian,
     /// Rotation to the left, and to the right against it.
     Turned,
+    /// What the left wheel rolls, ahead or back.
+    LeftWheel,
+    /// What the right wheel rolls.
+    RightWheel,
 }
 
 impl Per {
@@ -28,16 +32,20 @@ impl Per {
             Per::Ahead => "metre ahead or back, against each other",
             Per::Radian => "radian turned",
             Per::Turned => "radian to the left or right, against each other",
+            Per::LeftWheel | Per::RightWheel => "metre that it rolls",
         }
     }
 
-    pub fn of(self, step: &TrackStep) -> f64 {
+    /// How much of it there is in a step, of a robot with this wheelbase \[m\].
+    pub fn of(self, step: &TrackStep, wheelbase: f64) -> f64 {
         match self {
             Per::Second => step.duration,
             Per::Metre => step.way,
             Per::Ahead => step.way * step.speed.signum(),
             Per::Radian => step.rotation.abs(),
             Per::Turned => step.rotation,
+            Per::LeftWheel => step.way * step.speed.signum() - 0.5 * wheelbase * step.rotation,
+            Per::RightWheel => step.way * step.speed.signum() + 0.5 * wheelbase * step.rotation,
         }
     }
 }
