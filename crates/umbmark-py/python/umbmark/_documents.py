@@ -1471,9 +1471,10 @@ class Repeated(Record, frozen=True):
     acts_on : str or None
         What the formula acts on.
     motion : str
-        "forward", "sideways" or "yaw".
+        "forward", "sideways" or "yaw", or "left wheel" or "right wheel".
     per : str
-        What the motion is in proportion to: "second", "metre" or "radian turned".
+        What the motion is in proportion to: "second", "metre", "radian turned", or "metre that it
+        rolls", of a wheel.
     meaning : str
         The law in words.
     by : str
@@ -1550,9 +1551,10 @@ class UnlistedLaw(Record, frozen=True):
     acts_on : str or None
         What the formula acts on.
     motion : str
-        "forward", "sideways" or "yaw".
+        "forward", "sideways" or "yaw", or "left wheel" or "right wheel".
     per : str
-        What the motion is in proportion to: "second", "metre" or "radian turned".
+        What the motion is in proportion to: "second", "metre", "radian turned", or "metre that it
+        rolls", of a wheel.
     meaning : str
         The law in words.
     by : str

@@ -31,7 +31,7 @@ impl Per {
             Per::Metre => "metre",
             Per::Ahead => "metre ahead or back, against each other",
             Per::Radian => "radian turned",
-            Per::Turned => "radian to the left or right, against each other",
+            Per::Turned => "radian turned (left less right)",
             Per::LeftWheel | Per::RightWheel => "metre that it rolls",
         }
     }
