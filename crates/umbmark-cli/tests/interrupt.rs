@@ -112,7 +112,12 @@ fn signals(process: u32, kind: &str) -> u64 {
 fn a_hang_up_that_is_to_be_ignored_is_ignored() {
     const HANG_UP: u64 = 1;
     const INTERRUPT: u64 = 1 << 1;
-    for (shell, kind) in [("trap '' HUP; ", "SigIgn"), ("", "SigCgt")] {
+    let mut cases = vec![("trap '' HUP; ", "SigIgn"), ("", "SigCgt")];
+    if signals(std::process::id(), "SigIgn") & HANG_UP != 0 {
+        println!("skipped in part: the tests themselves ignore a hang-up, and so does what they start");
+        cases.pop();
+    }
+    for (shell, kind) in cases {
         let script = format!("{shell}exec \"$0\" mc -n 100000000");
         let mut command = Command::new("sh");
         command.args(["-c", &script, env!("CARGO_BIN_EXE_umbmark")]).stdout(Stdio::null()).stderr(Stdio::null());
