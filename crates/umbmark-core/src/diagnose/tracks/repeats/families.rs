@@ -115,12 +115,9 @@ impl Laws {
         self.add("the root of the speed".into(), written("sqrt(abs(speed))"), &[Metre], |s| s.speed.abs().sqrt());
         for share in SHARES {
             let v = share * fastest;
-            self.add_shaped(
-                "a speed above {c} m/s".into(),
-                shaped(&above("abs(speed)"), v),
-                &[Metre, Radian],
-                |s, by| beyond(s.speed.abs(), by[0]),
-            );
+            self.add_shaped("a speed above {c} m/s".into(), shaped(&above("abs(speed)"), v), &[Metre], |s, by| {
+                beyond(s.speed.abs(), by[0])
+            });
             self.add_shaped(
                 "the speed beyond {c} m/s".into(),
                 shaped("max(abs(speed) - c, 0)", v),
