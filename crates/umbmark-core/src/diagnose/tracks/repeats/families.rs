@@ -207,8 +207,8 @@ impl Laws {
         }
     }
 
-    /// What two wheels on an axle do: they roll against each other, or one of them rolls further, or less far, by its own speed, backward, or
-    /// as it warms up.
+    /// What two wheels on an axle do: they roll against each other, or one of them rolls further, or less far, backward, or as it
+    /// warms up. What depends on the speed of a wheel is in the catalogue.
     pub fn of_wheels(&mut self, extent: &Extent) {
         let arm = 0.5 * extent.wheelbase;
         self.add(
@@ -217,7 +217,6 @@ impl Laws {
             &[Per::Radian],
             move |s| 0.5 * (1.0 - (s.speed.powi(2) - (arm * s.turn_rate).powi(2)).signum()),
         );
-        let fastest = extent.speed.max(arm * extent.turn_rate);
         for (per, side, sign) in [(Per::LeftWheel, -arm, "-"), (Per::RightWheel, arm, "+")] {
             let speed = move |s: &TrackStep| s.speed + side * s.turn_rate;
             let text = format!("speed {sign} {arm:.4} * turn_rate");
@@ -227,16 +226,6 @@ impl Laws {
                 &[per],
                 move |s| 0.5 * (1.0 - speed(s).signum()),
             );
-            self.add("its own speed".into(), written(format!("abs({text})")), &[per], move |s| speed(s).abs());
-            self.add("the square of its own speed".into(), written(format!("({text})^2")), &[per], move |s| {
-                speed(s).powi(2)
-            });
-            for share in SHARES {
-                let formula = shaped(&above(&format!("abs({text})")), share * fastest);
-                self.add_shaped("a speed of its own above {c} m/s".into(), formula, &[per], move |s, by| {
-                    beyond(speed(s).abs(), by[0])
-                });
-            }
             self.add("the time in the run".into(), written("time"), &[per], |s| s.time);
             for c in DECAYS {
                 let words = "what dies away within {c} s of the start".into();
