@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// If the misfit exceeds this, other readings are tried; one is accepted if its misfit is smaller by the second factor.
-const DOUBTFUL: f64 = 0.3;
+pub(super) const DOUBTFUL: f64 = 0.3;
 const CLEARLY: f64 = 0.6;
 /// If the misfit of every reading exceeds this, wheels and reference do not belong to the same drive.
 const NOTHING: f64 = 0.75;

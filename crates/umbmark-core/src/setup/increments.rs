@@ -6,9 +6,6 @@ use super::{Fault, Seen, clock, faults};
 use crate::drive::Robot;
 use crate::run::TickLog;
 
-/// The misfit of the motion by the sums of all counts must be below this.
-const AGREES: f64 = 0.3;
-
 /// The fault that counts are increments: as they are they do not agree with the reference, and their running sums do.
 pub(super) fn found(seen: &[Seen], robot: &Robot) -> Option<Fault> {
     let sums: Vec<TickLog> = seen.iter().map(|seen| added_up(seen.log)).collect();
@@ -20,7 +17,7 @@ pub(super) fn found(seen: &[Seen], robot: &Robot) -> Option<Fault> {
     let beside: Vec<_> = beside.collect();
     let (faults, reading) = faults::look(&beside, robot);
     let agreement = Agreement::without_drift(&beside, reading, robot.drive.wheelbase());
-    let agrees = agreement.is_credible() && agreement.misfit < AGREES;
+    let agrees = agreement.is_credible() && agreement.misfit < faults::DOUBTFUL;
     (agrees && !faults.iter().any(|fault| matches!(fault, Fault::OtherMotion { .. }))).then_some(Fault::Increments)
 }
 
