@@ -113,6 +113,9 @@ mod tests {
         assert!(counts(0.2, 8.0, 0.4, 4));
         assert!(!counts(0.21, 8.0, 0.4, 4) && !counts(0.2, 4.4, 0.43, 4) && !counts(0.2, 8.0, 0.39, 4));
         assert!(!counts(0.2, 8.0, 0.4, 3));
+        assert!(counts(0.05, 6.0, 0.71, 4));
+        assert!(!counts(0.06, 6.0, 0.71, 4) && !counts(0.05, 5.0, 0.71, 4) && !counts(0.05, 6.0, 0.69, 4));
+        assert!(!counts(0.05, 6.0, 0.71, 3));
         let doubt = |deviations: f64, gain: f64, runs: usize| {
             let law = UnlistedLaw { gain, ..repeated.law.clone() };
             let doubted = Repeated { p: 0.3, deviations, laws: 4000, runs, law, ..repeated.clone() };
