@@ -216,6 +216,37 @@ fn what_logs_do_not_show_is_marked_and_refused_by_line_until_it_is_filled_in() {
     assert!(wrong.contains("--wheelbase") && wrong.contains("0.001"), "{wrong}");
 }
 
+/// The logs of a data logger, whose columns go by names of their own.
+#[test]
+fn columns_of_other_names_are_to_be_filled_in_and_then_read() {
+    let place = made();
+    let runs = place.path().join("made/runs");
+    for entry in std::fs::read_dir(&runs).unwrap() {
+        let file = entry.unwrap().path();
+        let text = std::fs::read_to_string(&file).unwrap();
+        let text = text.replacen("t_s,ticks_left,ticks_right", "Stamp,enc L,enc R", 1);
+        std::fs::write(&file, text).unwrap();
+    }
+    let document = said(place.path(), &["init", "mine", "--logs", "made/runs", "--json"]);
+    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    let open = document["to_fill_in"].as_array().unwrap();
+    assert!(["t_s", "ticks_left", "ticks_right"].iter().all(|name| open.contains(&(*name).into())), "{open:?}");
+    let file = place.path().join("mine/robot.toml");
+    let mut robot = std::fs::read_to_string(&file).unwrap();
+    assert!(robot.contains("# The logs have \"stamp\", \"enc l\", \"enc r\""), "{robot}");
+    let numbers = [("wheelbase_m", "0.34"), ("wheel_diameter_m", "0.15"), ("ticks_per_revolution", "2000")];
+    for (key, value) in [&numbers[..], &[("encoder_rate_hz", "100"), ("t_s", "\"stamp\"")]].concat() {
+        robot = robot.replace(&format!("{key} = \"fill in\""), &format!("{key} = {value}"));
+    }
+    std::fs::write(&file, &robot).unwrap();
+    let told = refused(place.path(), &["inspect", "mine"]);
+    assert!(told.contains("ticks_left must be what stands above this column") && told.contains("fill in"), "{told}");
+    robot = robot.replace("ticks_left = \"fill in\"", "ticks_left = \"enc L\"");
+    std::fs::write(&file, robot.replace("ticks_right = \"fill in\"", "ticks_right = \"enc R\"")).unwrap();
+    let text = said(place.path(), &["inspect", "mine"]);
+    assert!(text.contains("wheelbase 0.34 m, wheels 0.15 m, 2000 ticks"), "{text}");
+}
+
 #[test]
 fn numbers_come_from_the_command_line_the_controller_and_the_urdf_in_this_order() {
     let place = made();

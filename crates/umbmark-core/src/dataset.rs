@@ -75,6 +75,15 @@ pub struct RunConditions {
     pub stated: Vec<(String, Stated)>,
 }
 
+/// A column that goes by another name than its usual one.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ColumnName {
+    /// Its usual name, with its unit.
+    pub name: String,
+    /// What stands above it in the tables.
+    pub header: String,
+}
+
 /// A robot and its runs.
 #[derive(Clone, Debug, Default)]
 pub struct Dataset {
@@ -84,6 +93,8 @@ pub struct Dataset {
     pub path: Option<Path>,
     /// How the measured poses are counted in its files; those of `runs` are as they are meant to be.
     pub reference_frame: ReferenceFrame,
+    /// Names that columns have in its tables in place of the usual ones.
+    pub columns: Vec<ColumnName>,
     /// Its runs.
     pub runs: Vec<Run>,
     /// The sessions of its runs, in order; empty for a single one.

@@ -120,6 +120,9 @@ impl Dataset {
             if data.reference_frame != joined.reference_frame {
                 joined.reference_frame = ReferenceFrame::default();
             }
+            if data.columns != joined.columns {
+                joined.columns.clear();
+            }
             let other_path = data.path.is_some() && joined.path.is_some() && data.path != joined.path;
             parts.push((set, data.runs, other_path));
         }

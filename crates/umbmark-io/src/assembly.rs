@@ -2,6 +2,7 @@
 
 use super::RobotFile;
 use super::closures::{Closure, Marks, closures};
+use super::column_names::Renaming;
 use super::error::{At, DatasetError, LineProblem};
 use super::filled_in::drop_filled_in;
 use super::label::{self, Named};
@@ -9,6 +10,7 @@ use super::layout::csv::{Measured, ReturnRow};
 use super::recording::Recording;
 use super::stale::drop_stale;
 use super::start_frame::move_to_start;
+use super::template::is_untouched;
 use std::collections::BTreeMap;
 use umbmark_core::dataset::NoRobot;
 use umbmark_core::dataset::ReferenceFrame;
@@ -25,11 +27,17 @@ use umbmark_core::synchronise::{Alignment, synchronise};
 /// A log that turns by less than this has no direction \[rad\].
 const LEAST_TURN: f64 = 0.5;
 
+/// Said where nobody has filled in the robot.toml of the template.
+const UNTOUCHED: &str =
+    "robot.toml has the numbers of an example, as `umbmark init` wrote it: give those of your robot, and its name";
+
 /// A dataset in the making.
 pub(super) struct Assembly {
     robot: Option<Robot>,
     path: Option<Path>,
     reference_frame: ReferenceFrame,
+    /// What the columns of its tables are called.
+    pub columns: Renaming,
     runs: Vec<Run>,
     /// The place of each test, direction and number among the runs.
     index: BTreeMap<(TestKind, Option<Direction>, u32), usize>,
@@ -54,14 +62,18 @@ pub(super) struct Tracked {
 impl Assembly {
     pub fn new(file: Option<RobotFile>) -> Assembly {
         let reference_frame = file.as_ref().map(|file| file.reference).unwrap_or_default();
+        let columns = Renaming::by(file.as_ref().map(|file| file.columns.clone()).unwrap_or_default());
         let (robot, path) = file.map_or((None, None), |file| (Some(file.robot), file.path));
-        let (runs, places, warnings) = (Vec::new(), Vec::new(), Vec::new());
+        let (runs, places) = (Vec::new(), Vec::new());
+        let untouched = robot.as_ref().is_some_and(is_untouched);
+        let warnings = if untouched { vec![UNTOUCHED.to_owned()] } else { Vec::new() };
         let (index, clocks, topics) = (BTreeMap::new(), Vec::new(), Vec::new());
         let (has_returns, awaited, marks) = (false, BTreeMap::new(), Marks::new());
         Assembly {
             robot,
             path,
             reference_frame,
+            columns,
             runs,
             index,
             places,
@@ -231,11 +243,12 @@ impl Assembly {
             let column = "x_calc_m".to_owned();
             return Err(At::new(file, line).refuse(LineProblem::MissingColumn { column, remedy: remedy.into() }));
         }
+        let columns = self.columns.names();
         let Assembly { robot, path, reference_frame, mut runs, clocks, topics, warnings, .. } = self;
         runs.sort_by_key(|run| (run.test, run.direction, run.number));
         let sessions = Vec::new();
         let conditions = Vec::new();
-        Ok(Dataset { robot, path, reference_frame, runs, sessions, conditions, clocks, topics, warnings })
+        Ok(Dataset { robot, path, reference_frame, columns, runs, sessions, conditions, clocks, topics, warnings })
     }
 
     fn push(&mut self, run: Run, file: &str, line: usize) -> Result<(), DatasetError> {

@@ -125,7 +125,8 @@ impl<'a> Table<'a> {
 }
 
 impl<'a> Entry<'a> {
-    fn line(&self) -> usize {
+    /// The line that it stands on.
+    pub fn line(&self) -> usize {
         self.source.line(self.at)
     }
 

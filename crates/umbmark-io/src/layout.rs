@@ -4,6 +4,7 @@
 
 use self::messages::{OpenMessages, Opened, Topics};
 use super::assembly::{Assembly, Tracked};
+use super::column_names::Renaming;
 use super::conditions::read_conditions;
 use super::error::DatasetError;
 use super::probe::Probe;
@@ -232,8 +233,8 @@ fn track_endings() -> Vec<&'static str> {
 }
 
 /// The poses of a file that have a clock of their own.
-fn read_track(file: &Path, warnings: &mut Vec<String>) -> Result<Tracked, DatasetError> {
-    let track = parse_track(Source::open(file)?, warnings)?;
+fn read_track(file: &Path, columns: &Renaming, warnings: &mut Vec<String>) -> Result<Tracked, DatasetError> {
+    let track = parse_track(Source::open(file)?.with(columns), warnings)?;
     Ok(Tracked { track, file: file.display().to_string() })
 }
 

@@ -14,6 +14,7 @@
 mod assembly;
 pub mod checkpoint;
 mod closures;
+mod column_names;
 mod columns;
 mod conditions;
 mod contents;
@@ -61,6 +62,7 @@ mod watch_state;
 mod wheel_names;
 pub mod whole_file;
 
+pub use column_names::ColumnNames;
 pub use contents::{contents, has_logs};
 pub use controller_file::read_controller;
 pub use corrected::CorrectedFormat;

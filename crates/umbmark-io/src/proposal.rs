@@ -1,9 +1,10 @@
 //! A robot.toml proposed from logs, with what they do not show left to fill in, and the logs put beside it.
 
+use super::column_names::COLUMNS;
 use super::contents::{FoundLog, logs_in};
 use super::error::DatasetError;
 use super::export::UrdfFile;
-use super::layout::csv::{REFERENCE, ROBOT, RUNS};
+use super::layout::csv::{self, REFERENCE, ROBOT, RUNS};
 use super::layout::messages::Topics;
 use super::layout::{log_endings, look};
 use super::probe::{extension, name_of, names_in};
@@ -75,6 +76,8 @@ pub struct Proposal {
     pub robot: String,
     /// The numbers in it; empty where a log brings its own robot.toml along.
     pub numbers: Vec<ProposedNumber>,
+    /// Columns of logs whose tables call them otherwise: what they are called there is to be filled in.
+    pub columns: Vec<String>,
     /// What each log holds.
     pub contents: Vec<LogContents>,
     /// What was noticed, a sentence each.
@@ -106,7 +109,8 @@ impl Proposal {
             known.extend(UrdfFile { name, text, joints: None }.numbers().ok());
         }
         let files = placed(place, folder, &logs)?;
-        let mut proposal = Proposal { robot: String::new(), numbers: Vec::new(), contents, notes, files };
+        let (robot, numbers, columns) = (String::new(), Vec::new(), Vec::new());
+        let mut proposal = Proposal { robot, numbers, columns, contents, notes, files };
         match proposal.contents.iter().find_map(|log| log.robot.clone()) {
             Some(text) => proposal.robot = text,
             None => proposal.propose(folder, &known)?,
@@ -114,9 +118,10 @@ impl Proposal {
         Ok(proposal)
     }
 
-    /// How many numbers are to be filled in.
-    pub fn left_open(&self) -> usize {
-        self.numbers.iter().filter(|number| number.value.is_none()).count()
+    /// The keys that are to be filled in.
+    pub fn to_fill_in(&self) -> Vec<&str> {
+        let numbers = self.numbers.iter().filter(|number| number.value.is_none()).map(|number| number.key);
+        numbers.chain(self.columns.iter().map(String::as_str)).collect()
     }
 
     /// How many files are put into the folder beside robot.toml.
@@ -146,8 +151,12 @@ impl Proposal {
 
     fn propose(&mut self, folder: &Path, known: &[KnownNumbers]) -> Result<(), DatasetError> {
         let wheels: Vec<&WheelsFound> = self.contents.iter().filter_map(|log| log.wheels.as_ref().ok()).collect();
-        let Some(first) = wheels.first() else { return Ok(()) };
-        let drive = first.drive;
+        let drive = wheels.first().map_or_else(DriveKind::default, |first| first.drive);
+        if wheels.is_empty() {
+            let counters = drive.columns();
+            let counters = counters.iter().map(|counter| format!("ticks_{counter}"));
+            self.columns = std::iter::once("t_s".to_owned()).chain(counters).collect();
+        }
         if let Some(other) = wheels.iter().find(|wheels| wheels.drive != drive) {
             let found = format!("there are logs of a {} and of a {} drive", drive.name(), other.drive.name());
             let remedy = "begin with the logs of one robot";
@@ -169,8 +178,8 @@ impl Proposal {
             "# The robot as its own software believes it to be: nominal values, not measured ones.\n\
              # Lengths in metres. `umbmark init` proposed this file from logs.\n",
         );
-        if self.left_open() > 0 {
-            text += "# The lines marked FILL IN hold what the logs do not show: put a number there.\n";
+        if !self.to_fill_in().is_empty() {
+            text += "# The lines marked FILL IN hold what the logs do not show: write it there.\n";
         }
         text += "\n[robot]\n";
         let mut line = |key: &str, value: &str, comment: &str| {
@@ -187,9 +196,29 @@ impl Proposal {
                 None => line(number.key, &format!("\"{FILL_IN}\""), &format!("FILL IN: {}", number.source)),
             }
         }
+        if !self.columns.is_empty() {
+            text += &self.columns_text();
+        }
         text += "\n# If it was told to drive one path, say which; `umbmark inspect` then checks it.\n\
                  # [path]\n# shape = \"square\"\n# side_m = 4.0\n";
         text
+    }
+
+    /// The table that says what the columns of the first log are called.
+    fn columns_text(&self) -> String {
+        let headers = self.contents.first().map_or(&[][..], |log| &log.parts);
+        let headers: Vec<String> =
+            headers.iter().map(|part| toml::Value::from(part.name.as_str()).to_string()).collect();
+        let mut text = String::from(
+            "\n# What stands above these columns in the logs. Its unit is part of a name: t_ms, x_ref_mm and theta_ref_deg are read as well.\n",
+        );
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "# The logs have {}.\n[{COLUMNS}]", headers.join(", "));
+        for name in &self.columns {
+            let _ = writeln!(text, "{:<33} # FILL IN", format!("{name} = \"{FILL_IN}\""));
+        }
+        text + "# x_ref_m = \"\"                    # and those of a reference, where there is one\n\
+                # y_ref_m = \"\"\n# theta_ref_rad = \"\"\n"
     }
 }
 
@@ -199,6 +228,7 @@ type Usable = (Vec<FoundLog>, Vec<LogContents>, Vec<String>);
 fn usable(place: &Path, logs: Vec<FoundLog>, topics: &Topics, words: &Words) -> Result<Usable, DatasetError> {
     let file = place.display().to_string();
     let (mut kept, mut contents, mut notes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut tables = (Vec::new(), Vec::new());
     for log in logs {
         let found = look(&log.path, topics, words).transpose()?;
         let Some(found) = found else { continue };
@@ -207,8 +237,19 @@ fn usable(place: &Path, logs: Vec<FoundLog>, topics: &Topics, words: &Words) -> 
                 kept.push(log);
                 contents.push(found);
             }
-            Err(problem) => notes.push(format!("{}: not taken: {problem}", log.path.display())),
+            Err(problem) => {
+                notes.push(format!("{}: not taken: {problem}", log.path.display()));
+                let has_counts = found.parts.iter().any(|part| part.name.starts_with("ticks_"));
+                if found.layout == csv::LAYOUT.name && !has_counts && found.parts.len() > 2 {
+                    tables.0.push(log);
+                    tables.1.push(found);
+                }
+            }
         }
+    }
+    if kept.is_empty() && !tables.0.is_empty() {
+        let said = "the columns go by other names than t_s and ticks_...: write in robot.toml which is which";
+        return Ok((tables.0, tables.1, vec![said.to_owned()]));
     }
     match (&kept[..], &notes[..]) {
         ([], []) => {
@@ -323,7 +364,7 @@ const FINE_TICKS: f64 = 65536.0;
 
 fn ticks(wheels: &[&WheelsFound], known: &[KnownNumbers]) -> ProposedNumber {
     let given = number(&Encoder::TICKS, vec![Encoder::TICKS.name], known);
-    let counts = wheels.iter().any(|wheels| wheels.unit == WheelUnit::Counts);
+    let counts = wheels.is_empty() || wheels.iter().any(|wheels| wheels.unit == WheelUnit::Counts);
     if given.value.is_some() || counts {
         return given;
     }
@@ -342,7 +383,7 @@ fn ticks(wheels: &[&WheelsFound], known: &[KnownNumbers]) -> ProposedNumber {
 
 fn rate(wheels: &[&WheelsFound], known: &[KnownNumbers]) -> ProposedNumber {
     let given = number(&Encoder::RATE, vec![Encoder::RATE.name], known);
-    if given.value.is_some() {
+    if given.value.is_some() || wheels.is_empty() {
         return given;
     }
     let mut rates: Vec<f64> = wheels.iter().map(|wheels| wheels.rate).collect();

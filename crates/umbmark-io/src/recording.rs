@@ -11,6 +11,8 @@ use umbmark_core::drive::{DriveKind, Robot, roll_over};
 use umbmark_core::prose::counted;
 use umbmark_core::run::{headings_of, place};
 
+/// Most robots' wheels roll no faster \[m/s\].
+const PLAUSIBLE: f64 = 10.0;
 /// No wheel of a robot rolls faster \[m/s\].
 const FASTEST: f64 = 100.0;
 /// Wheels that roll more slowly \[m/s\], in rows farther apart \[s\], of which there are so many or more, have another unit of time.
@@ -338,6 +340,18 @@ impl Recording {
         })
     }
 
+    /// The advice for times that are seconds by the speed of a wheel \[m/s\], in a column that is called otherwise.
+    fn in_seconds(&self, speed: f64) -> String {
+        let time = &self.columns[0];
+        let per_second = [("_ms", 1e3), ("_us", 1e6), ("_ns", 1e9)].into_iter().find(|(unit, _)| time.ends_with(unit));
+        match per_second {
+            Some((_, factor)) if speed / factor <= PLAUSIBLE => {
+                format!("if column \"{time}\" holds seconds, call it t_s; else ")
+            }
+            _ => String::new(),
+        }
+    }
+
     fn jump(&self, wheel: usize, at: usize, [before, after]: [f64; 2], speed: f64, bits: Option<u32>) -> DatasetError {
         let cause = bits.map_or("rolled over (say counter_bits in robot.toml)".to_owned(), |bits| {
             format!("has another width than {bits} bits")
@@ -349,7 +363,11 @@ impl Recording {
             seconds: ((self.time[at] - self.time[at - 1]) * 1e9).round() / 1e9,
             speed: speed.round(),
             limit: FASTEST,
-            remedy: format!("look whether the counter was set back or {cause}, or rows are missing").into(),
+            remedy: format!(
+                "{}look whether the counter was set back or {cause}, or rows are missing",
+                self.in_seconds(speed)
+            )
+            .into(),
         })
     }
 }

@@ -1,5 +1,6 @@
-//! `robot.toml`: the nominal robot, its encoders and its path, and how the measured poses are counted.
+//! `robot.toml`: the nominal robot, its encoders and its path, how the measured poses are counted, and what columns are called.
 
+use super::column_names::{COLUMNS, ColumnNames};
 use super::document::{Entry, Source, Table};
 use super::error::{DatasetError, did_you_mean};
 use super::source::read_text;
@@ -21,6 +22,8 @@ pub struct RobotFile {
     pub path: Option<Path>,
     /// How the measured poses of its logs are counted.
     pub reference: ReferenceFrame,
+    /// Names that columns have in its tables in place of the usual ones.
+    pub columns: ColumnNames,
 }
 
 impl RobotFile {
@@ -35,13 +38,16 @@ impl RobotFile {
         let source = Source { file, text };
         let root = source.parse()?;
         let root = Table::root(&source, &root);
-        root.only(&["robot", "path", "reference"])?;
+        root.only(&["robot", "path", "reference", COLUMNS])?;
         let robot =
             root.need("robot", "a table [robot] with wheelbase_m, wheel_diameter_m and ticks_per_revolution")?;
         let robot = read_robot_table(&robot.table("[robot]".into())?)?;
         let path = root.get("path").map(|path| read_path_table(&path.table("[path]".into())?, &robot)).transpose()?;
         let reference = root.get("reference").map(|entry| read_reference(&entry.table("[reference]".into())?));
-        Ok(RobotFile { robot, path, reference: reference.transpose()?.unwrap_or_default() })
+        let columns = root.get(COLUMNS).map(|entry| ColumnNames::read(file, &entry.table(format!("[{COLUMNS}]"))?));
+        let (reference, columns) =
+            (reference.transpose()?.unwrap_or_default(), columns.transpose()?.unwrap_or_default());
+        Ok(RobotFile { robot, path, reference, columns })
     }
 }
 

@@ -1,6 +1,7 @@
 //! `robot.toml` as text.
 
 use super::RobotFile;
+use super::column_names::{COLUMNS, ColumnNames};
 use super::robot_file::{EXCHANGED, is_waypoints};
 use std::fmt::Write;
 use umbmark_core::dataset::{Dataset, ReferenceFrame};
@@ -10,12 +11,13 @@ use umbmark_core::path::{Path, SpeedProfile};
 impl RobotFile {
     /// A robot and its path, whose measured poses are counted as they are meant to be.
     pub fn new(robot: Robot, path: Option<Path>) -> RobotFile {
-        RobotFile { robot, path, reference: ReferenceFrame::default() }
+        RobotFile { robot, path, reference: ReferenceFrame::default(), columns: ColumnNames::default() }
     }
 
     /// What a `robot.toml` beside the logs of a dataset has to say, with `robot` in the place of the nominal one.
     pub fn beside(data: &Dataset, robot: Robot) -> RobotFile {
-        RobotFile { robot, path: data.path.clone(), reference: data.reference_frame }
+        let columns = ColumnNames::of(&data.columns);
+        RobotFile { robot, path: data.path.clone(), reference: data.reference_frame, columns }
     }
 
     /// A commented `robot.toml` that reads back as this, to the last bit.
@@ -37,6 +39,14 @@ impl RobotFile {
         if !said.is_empty() {
             text.push_str("\n[reference]\n");
             said.into_iter().for_each(|(key, _, meaning)| line(&mut text, key, "true", meaning));
+        }
+        let mut names = self.columns.iter().peekable();
+        if names.peek().is_some() {
+            text.push_str(&format!("\n[{COLUMNS}]\n"));
+        }
+        for name in names {
+            let header = toml::Value::from(name.header.as_str()).to_string();
+            line(&mut text, &name.name, &header, "what stands above this column in the tables");
         }
         text
     }

@@ -140,9 +140,10 @@ impl<'a> Sheet<'a> {
         if first.parse::<f64>().is_ok() {
             return Err(At::new(row.file, row.line).refuse(LineProblem::NoHeader { value: quoted(first) }));
         }
-        let mut header: Vec<String> = row.cells().map(str::to_lowercase).collect();
+        let (mut header, line): (Vec<String>, _) = (row.cells().map(str::to_lowercase).collect(), row.line);
         header.truncate(header.iter().rposition(|name| !name.is_empty()).map_or(0, |last| last + 1));
-        Ok(Sheet { header, header_line: row.line, rows })
+        rows.reader.get_ref().columns.rename(&mut header);
+        Ok(Sheet { header, header_line: line, rows })
     }
 
     /// Takes every row as data, of a number of columns.

@@ -1,5 +1,6 @@
 //! The bytes of a file, packed or not, a block at a time.
 
+use super::column_names::Renaming;
 use super::error::{At, DatasetError, LineProblem};
 use super::foreign::Foreign;
 use flate2::read::MultiGzDecoder;
@@ -16,6 +17,8 @@ pub(super) struct Source<'a> {
     /// What messages call it.
     pub file: String,
     packed: bool,
+    /// What its columns are called, where it is a table.
+    pub columns: Renaming,
     /// The first block.
     head: Vec<u8>,
     rest: Box<dyn Read + 'a>,
@@ -49,7 +52,8 @@ impl<'a> Source<'a> {
         let packed = head.starts_with(&[0x1f, 0x8b]);
         let file = file.to_owned();
         let (given, old_mac, last) = (0, false, b'\n');
-        let mut source = Source { file, packed, head, rest: Box::new(bytes), given, old_mac, last };
+        let columns = Renaming::default();
+        let mut source = Source { file, packed, columns, head, rest: Box::new(bytes), given, old_mac, last };
         if packed {
             let decoder = MultiGzDecoder::new(Cursor::new(source.head).chain(source.rest));
             source.rest = Box::new(Unpacked { decoder, largest, count: 0 });
@@ -66,6 +70,11 @@ impl<'a> Source<'a> {
         }
         source.old_mac = source.head.contains(&b'\r') && !source.head.contains(&b'\n');
         Ok(source)
+    }
+
+    /// The same, its columns called by other names.
+    pub fn with(self, columns: &Renaming) -> Source<'a> {
+        Source { columns: columns.clone(), ..self }
     }
 
     /// Whether nothing but blanks is in it.

@@ -1,11 +1,13 @@
 //! What a new user fills in: a commented `robot.toml` and an empty `returns.csv`.
 
+use super::RobotFile;
 use super::error::DatasetError;
 use super::layout::csv::{RETURNS, ROBOT};
 use super::save::{Existing, put_beside_logs};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::RETURNS_COLUMNS;
+use umbmark_core::drive::Robot;
 use umbmark_core::path::SHAPES;
 
 const ROBOT_TEXT: &str = r#"# The robot as its own software believes it to be: nominal values, not measured ones.
@@ -53,6 +55,15 @@ pub fn write_template(folder: impl AsRef<Path>, existing: Existing) -> Result<[P
     let files = BTreeMap::from([(PathBuf::from(ROBOT), robot), (PathBuf::from(RETURNS), returns)]);
     put_beside_logs(folder, &files, existing)?;
     Ok([folder.join(ROBOT), folder.join(RETURNS)])
+}
+
+/// Whether a robot still has the name and the numbers of the template.
+pub(super) fn is_untouched(robot: &Robot) -> bool {
+    let [text, _] = template();
+    RobotFile::parse(ROBOT, &text).is_ok_and(|template| {
+        let numbers = |robot: &Robot| (robot.name.clone(), robot.drive, robot.encoder.ticks_per_revolution());
+        numbers(&template.robot) == numbers(robot)
+    })
 }
 
 /// The texts of the two files: the robot and the returns.

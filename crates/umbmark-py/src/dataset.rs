@@ -69,6 +69,8 @@ impl From<core::Dataset> for Dataset {
 #[derive(Default, Serialize, Deserialize)]
 struct Rest {
     reference_frame: core::ReferenceFrame,
+    #[serde(default)]
+    columns: Vec<core::ColumnName>,
     runs: Vec<core::Run>,
     sessions: Vec<core::Session>,
     #[serde(default)]
@@ -407,6 +409,7 @@ impl Dataset {
         let data = &slf.get().0;
         let rest = Rest {
             reference_frame: data.reference_frame,
+            columns: data.columns.clone(),
             runs: data.runs.clone(),
             sessions: data.sessions.clone(),
             conditions: data.conditions.clone(),
@@ -467,12 +470,13 @@ type Pickled<'py> = (Option<Robot>, Option<Path>, Bound<'py, PyBytes>);
 
 impl Rest {
     fn with(self, robot: Option<&Robot>, path: Option<&Path>) -> Dataset {
-        let Rest { reference_frame, runs, sessions, conditions, clocks, topics, warnings } = self;
+        let Rest { reference_frame, columns, runs, sessions, conditions, clocks, topics, warnings } = self;
         let (robot, path) = (robot.map(|robot| robot.0.clone()), path.map(|path| path.0.clone()));
         Dataset::from(core::Dataset {
             robot,
             path,
             reference_frame,
+            columns,
             runs,
             sessions,
             conditions,

@@ -295,11 +295,15 @@ impl App {
         let folder = self.served.drops.join(dropped::begin(&self.served.drops, &name)?);
         let proposal =
             Proposal::of(&place, &folder, &Topics::default(), &[known], &Words::PLAIN).map_err(Trouble::because)?;
-        if proposal.left_open() > 0 {
-            let open = proposal.numbers.iter().filter(|number| number.value.is_none()).map(|number| number.key);
-            let open = open.collect::<Vec<_>>().join(", ");
+        if !proposal.to_fill_in().is_empty() {
             let _ = std::fs::remove_dir(&folder);
-            return Err(Trouble(format!("Still missing: {open}.")));
+            let columns = proposal.columns.join(", ");
+            return Err(Trouble(match columns.is_empty() {
+                true => format!("Still missing: {}.", proposal.to_fill_in().join(", ")),
+                false => format!(
+                    "No column is called {columns}: put a robot.toml beside the logs whose [columns] say which these are."
+                ),
+            }));
         }
         proposal.write(&folder, Existing::Keep).map_err(Trouble::because)?;
         self.open(&folder)

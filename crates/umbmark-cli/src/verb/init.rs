@@ -171,7 +171,7 @@ fn template(folder: &Path, existing: Existing, session: &mut Session) -> anyhow:
 
 fn proposed_text(proposal: &Proposal, robot: &Path, folder: &Path, topics: &str) -> anyhow::Result<String> {
     let mut text = format!("wrote {}\n", robot.display());
-    let open = proposal.left_open();
+    let open = proposal.to_fill_in().len();
     let rows = proposal.numbers.iter().map(|number| {
         let value = number.value.map_or("FILL IN".to_owned(), |value| value.to_string());
         (format!("  {:<24}{value}", number.key), number.source.clone())
@@ -187,7 +187,8 @@ fn proposed_text(proposal: &Proposal, robot: &Path, folder: &Path, topics: &str)
         0 => text += &format!("found {logs} in {}\n", folder.join("runs").display()),
         _ => text += &format!("put {logs} into {}\n", folder.join("runs").display()),
     }
-    if proposal.contents.iter().all(|log| matches!(log.reference, Ok(None))) {
+    let are_read = proposal.columns.is_empty();
+    if are_read && proposal.contents.iter().all(|log| matches!(log.reference, Ok(None))) {
         text += &hanging(
             "",
             2,
@@ -220,7 +221,7 @@ fn document(proposal: &Proposal, robot: &Path) -> serde_json::Value {
     json!({
         "written": [robot.display().to_string()],
         "numbers": proposal.numbers.iter().map(number).collect::<Vec<_>>(),
-        "to_fill_in": proposal.numbers.iter().filter(|n| n.value.is_none()).map(|n| n.key).collect::<Vec<_>>(),
+        "to_fill_in": proposal.to_fill_in(),
         "logs": proposal.contents.iter().map(result::LogContents::from).collect::<Vec<_>>(),
         "notes": proposal.notes,
     })

@@ -78,7 +78,10 @@ pub fn columns(model: &Model, values: &[usize], tracks: &[&Track]) -> Vec<Vec<Ve
 
 /// The derivatives in the first `count` lanes of a chain: lane by lane, run by run.
 fn slopes(chain: &Chain<Dual>, count: usize, tracks: &[&Track]) -> Vec<Vec<Vec<Pose2>>> {
-    let poses: Vec<Vec<Pose2<Dual>>> = tracks.iter().map(|track| track.poses(chain)).collect();
+    // Where a robot is measured at the end of its way only, it stands there: neither a delay nor a filter shows.
+    let ends = |track: &Track| *track.seen_after() == [track.travel().len()];
+    let observed = |track: &&Track| if ends(track) { vec![track.end(chain)] } else { track.poses(chain) };
+    let poses: Vec<Vec<Pose2<Dual>>> = tracks.iter().map(observed).collect();
     let of_lane = |lane: usize| poses.iter().map(|run| run.iter().map(|pose| pose.slope(lane)).collect()).collect();
     (0..count).map(of_lane).collect()
 }
@@ -105,5 +108,18 @@ mod tests {
         assert!((turned(0) - 16.0 / 0.34).abs() < 1e-9 && (turned(1) - 16.0 / 0.34).abs() < 1e-9);
         let start: Vec<_> = named("start_pose").unwrap().sizes.iter().map(|s| s.parameter.name).collect();
         assert_eq!(start, ["x_m", "y_m", "heading_rad"]);
+    }
+
+    #[test]
+    fn a_delay_and_a_filter_are_candidates_where_a_moving_robot_is_measured_and_not_where_it_stands() {
+        let robot = Robot::labmate();
+        let late = ["reference_delay", "reference_filter"];
+        let of = |tracks: &[Track]| {
+            let found = candidates(&Model::new(&robot), tracks).unwrap();
+            late.map(|name| found.iter().any(|candidate| candidate.effect.about.name == name))
+        };
+        let path = Path::umbmark();
+        assert_eq!(of(&Direction::BOTH.map(|d| Track::in_pieces(&path, d, &robot))), [false; 2]);
+        assert_eq!(of(&Direction::BOTH.map(|d| Track::watched(&path, d, &robot))), [true; 2]);
     }
 }

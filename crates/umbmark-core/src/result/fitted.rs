@@ -107,12 +107,22 @@ impl Fitted {
     }
 }
 
+/// Said of an effect whose sizes may be nothing by their intervals, which hold with this probability.
+const UNCERTAIN: (f64, &str) = (0.95, " That is within its uncertainty.");
+
 /// Each fitted effect with its meaning for the robot.
 pub fn meaning(estimates: &[evidence::Estimate], model: &effect::Model) -> Keyed<String> {
+    let (level, uncertain) = UNCERTAIN;
+    let may_be_nothing = |e: &evidence::Estimate| {
+        let nothing = model.place_of(e.effect, e.parameter).and_then(|place| model.nothing(place))?;
+        Some(e.interval(level).is_none_or(|i| (i.low..=i.high).contains(&nothing)))
+    };
     let mut said: Vec<(&str, String)> = Vec::new();
     for e in estimates {
         if said.iter().all(|(name, _)| *name != e.effect) {
-            said.extend(model.meaning(e.effect).map(|sentence| (e.effect, sentence)));
+            let sizes = estimates.iter().filter(|other| other.effect == e.effect).filter_map(may_be_nothing);
+            let doubt = if sizes.reduce(|all, one| all && one) == Some(true) { uncertain } else { "" };
+            said.extend(model.meaning(e.effect).map(|sentence| (e.effect, sentence + doubt)));
         }
     }
     said.into_iter().collect()
@@ -123,4 +133,39 @@ pub fn not_shown(model: &effect::Model, fitted: &[evidence::Estimate]) -> Vec<&'
     let is_free = |part: &&effect::Part| part.free && part.fixed.len() < part.values.len();
     let free = model.parts().iter().filter(is_free).map(|part| part.effect.name());
     free.filter(|name| fitted.iter().all(|e| e.effect != *name)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::Robot;
+
+    #[test]
+    fn an_effect_that_may_be_nothing_by_its_interval_is_said_to_be_within_its_uncertainty() {
+        let robot = Robot::labmate();
+        let mut model = effect::Model::new(&robot);
+        model.set("scale", "e_s", 1.001).unwrap();
+        model.set("marker_offset", "forward_m", 0.02).unwrap();
+        let said = |e_s: f64, aside: f64| {
+            let of = |effect, parameter, value, standard_error| evidence::Estimate {
+                effect,
+                parameter,
+                value,
+                standard_error,
+                degrees_of_freedom: f64::INFINITY,
+            };
+            let estimates = [
+                of("scale", "e_s", 1.001, e_s),
+                of("marker_offset", "forward_m", 0.02, 0.1),
+                of("marker_offset", "left_m", 0.01, aside),
+            ];
+            let all = meaning(&estimates, &model);
+            ["scale", "marker_offset"].map(|name| all.get(name).unwrap().ends_with(UNCERTAIN.1))
+        };
+        // 1.96 standard errors; two sizes, of which one is enough.
+        assert_eq!(said(0.0006, 0.1), [true, true]);
+        assert_eq!(said(0.0005, 0.1), [false, true]);
+        assert_eq!(said(0.0006, 0.005), [true, false]);
+        assert_eq!(said(f64::NAN, 0.005), [true, false]);
+    }
 }

@@ -24,7 +24,7 @@ pub(crate) use tick_log::{parse_tick_log, tick_log_text};
 use umbmark_core::dataset::{Dataset, Run, TickLog};
 use umbmark_core::run::dead_reckoning::EndPose;
 
-pub(super) const LAYOUT: Layout = Layout::new("csv", "robot.toml, returns.csv and runs/*.csv: holds everything")
+pub(crate) const LAYOUT: Layout = Layout::new("csv", "robot.toml, returns.csv and runs/*.csv: holds everything")
     .reads_data((is_data, read))
     .reads_logs(ReadLogs { ending: "csv", add: add_log, look: contents::look })
     .reads_tracks((&["csv"], track::is_track, track::parse_columns))
@@ -66,7 +66,8 @@ fn read_folder(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> 
         }
     }
     if probe.has(MARKS) {
-        assembly.marks = marks::parse(Source::open(&folder.join(MARKS))?, &mut assembly.warnings)?;
+        assembly.marks =
+            marks::parse(Source::open(&folder.join(MARKS))?.with(&assembly.columns), &mut assembly.warnings)?;
     }
     let mut logs = 0;
     if probe.has(RUNS) {
@@ -83,6 +84,7 @@ fn read_folder(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> 
     for file in named_alike.filter(|file| sheets().all(|sheet| *sheet != name_of(file))) {
         assembly.warnings.push(format!("{}: is no return sheet ({RETURNS}) and was not read", file.display()));
     }
+    assembly.columns.check()?;
     assembly.finish()
 }
 
@@ -92,7 +94,7 @@ pub(super) fn not_a_dataset(file: &Path, found: String) -> DatasetError {
 
 fn add_returns(assembly: &mut Assembly, file: &Path) -> Result<(), DatasetError> {
     let name = file.display().to_string();
-    let rows = parse_returns(Source::open(file)?, &mut assembly.warnings)?;
+    let rows = parse_returns(Source::open(file)?.with(&assembly.columns), &mut assembly.warnings)?;
     assembly.add_returns(&name, &rows)
 }
 
@@ -141,9 +143,12 @@ fn tracks_beside(runs: &Path, warnings: &mut Vec<String>) -> Result<Tracks, Data
 
 /// Adds a log, with the track that stands beside it.
 fn add_log(assembly: &mut Assembly, file: &Path, tracks: &mut Tracks, _: &Topics) -> Result<(), DatasetError> {
-    let recording = parse_tick_log(Source::open(file)?, assembly.kind(), &mut assembly.warnings)?;
-    let tracked =
-        tracks.remove(&stem(file)).map(|track| super::read_track(&track, &mut assembly.warnings)).transpose()?;
+    let recording =
+        parse_tick_log(Source::open(file)?.with(&assembly.columns), assembly.kind(), &mut assembly.warnings)?;
+    let tracked = tracks
+        .remove(&stem(file))
+        .map(|track| super::read_track(&track, &assembly.columns, &mut assembly.warnings))
+        .transpose()?;
     let stem = stem(file);
     assembly.add_recording(recording, tracked, &stem, label::parse(&stem), EndPose::Standing)
 }
@@ -156,7 +161,10 @@ fn read_file(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
         return Err(DatasetError::NotADataset { file, found, remedy: "give the folder it is in, or returns.csv" });
     }
     let mut assembly = Assembly::new(probe.robot_file()?);
-    if probe.first_row()?.to_lowercase().contains("ticks") {
+    let mut header: Vec<String> =
+        probe.first_row()?.to_lowercase().split(',').map(|name| name.trim_matches([' ', '"']).to_owned()).collect();
+    assembly.columns.rename(&mut header);
+    if header.iter().any(|name| name.contains("ticks")) {
         let in_runs = folder.file_name().is_some_and(|name| name == RUNS);
         let mut tracks = if in_runs { tracks_beside(folder, &mut Vec::new())? } else { Tracks::new() };
         add_log(&mut assembly, file, &mut tracks, topics)?;

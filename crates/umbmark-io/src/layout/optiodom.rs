@@ -109,6 +109,7 @@ fn read_set(folder: &Path, set: &str, names: &[String]) -> Result<Dataset, Datas
     for run in runs {
         add_run(&mut assembly, folder, &run)?;
     }
+    assembly.columns.check()?;
     assembly.finish()
 }
 
@@ -142,7 +143,7 @@ fn add_run(assembly: &mut Assembly, folder: &Path, run: &RunFiles) -> Result<(),
         return Err(At::new(source.file, 1).refuse(LineProblem::NotYet { key, value, remedy }));
     }
     let recording = parse_odometry(source)?;
-    let tracked = super::read_track(&folder.join(track), &mut assembly.warnings)?;
+    let tracked = super::read_track(&folder.join(track), &assembly.columns, &mut assembly.warnings)?;
     assembly.add_recording(recording, Some(tracked), &stem(&file), named, EndPose::Last)
 }
 

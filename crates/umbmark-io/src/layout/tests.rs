@@ -80,6 +80,102 @@ fn the_own_layout_loses_nothing() {
     assert_eq!(read.robot, data.robot);
 }
 
+/// A dataset in the own layout whose columns go by other names, in a unit of their own, with the lines of `[columns]`.
+fn called_otherwise(folder: &Path, lines: &str) {
+    layout("csv").write(&dataset(1), folder, Existing::Keep).unwrap();
+    let robot = folder.join("robot.toml");
+    let text = std::fs::read_to_string(&robot).unwrap();
+    std::fs::write(&robot, format!("{text}\n[columns]\n{lines}")).unwrap();
+    for entry in std::fs::read_dir(folder.join("runs")).unwrap() {
+        let file = entry.unwrap().path();
+        let text = std::fs::read_to_string(&file).unwrap();
+        let (header, rows) = text.split_once('\n').unwrap();
+        assert_eq!(header, "t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad");
+        std::fs::write(&file, format!("Stamp,\"Enc L\",Enc R,x_ref_m,pos_y,yaw\n{rows}")).unwrap();
+    }
+}
+
+const NAMES: &str = "t_s = \"stamp\"\nticks_left = \"enc l\"\nticks_right = \"Enc R\"\ny_ref_m = \"pos_y\"\n\
+    theta_ref_rad = \"yaw\"\n";
+
+#[test]
+fn columns_that_are_called_otherwise_are_read_by_the_names_of_the_robot_file() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("own");
+    called_otherwise(&folder, NAMES);
+    let (own, usual) = (crate::load(&folder).unwrap(), round_trip(&dataset(1), "csv").0);
+    assert_eq!(own.runs, usual.runs);
+    assert!(own.warnings.is_empty(), "{:?}", own.warnings);
+    let one = crate::load(folder.join("runs").join("cw_01.csv")).unwrap();
+    assert_eq!(logs(&one), [logs(&usual)[0]]);
+    // What is written beside them reads the same tables.
+    let text = RobotFile::beside(&own, own.robot.clone().unwrap()).text();
+    std::fs::write(folder.join("robot.toml"), text).unwrap();
+    assert_eq!(crate::load(&folder).unwrap().runs, usual.runs);
+    // Converted, they have their usual names.
+    let (converted, _) = round_trip(&own, "csv");
+    assert_eq!((converted.runs, converted.columns.len()), (usual.runs, 0));
+}
+
+#[test]
+fn a_name_that_no_table_has_or_that_is_given_twice_is_refused() {
+    let refused = |lines: &str| {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("own");
+        called_otherwise(&folder, lines);
+        let message = crate::load(&folder).unwrap_err().to_string();
+        message.rsplit_once("/own/").unwrap().1.to_owned()
+    };
+    let line = |text: &str| {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("own");
+        called_otherwise(&folder, text);
+        let whole = std::fs::read_to_string(folder.join("robot.toml")).unwrap();
+        whole.lines().count()
+    };
+    let lost = format!("{NAMES}gyro_rad_s = \"wz\"\n");
+    let at = line(&lost);
+    let words = "gyro_rad_s must be what stands above a column, got \"wz\"; no table of this dataset has it";
+    assert_eq!(refused(&lost), format!("robot.toml:{at}: {words}"));
+    let twice = format!("{NAMES}x_ref_m = \"POS_Y\"\n");
+    assert!(refused(&twice).contains("a column that no other line names"), "{}", refused(&twice));
+    let typed = NAMES.replace("ticks_left", "tick_left");
+    assert!(refused(&typed).contains("there is no column ticks_left; is it \"tick_left\"?"), "{}", refused(&typed));
+    let number = format!("{NAMES}x_ref_m = 4\n");
+    assert!(refused(&number).contains("put it in quotation marks"), "{}", refused(&number));
+    let doubled = NAMES.replace("y_ref_m", "x_ref_m");
+    assert!(refused(&doubled).contains("x_ref_m"), "{}", refused(&doubled));
+}
+
+/// The same in the tables of a track, of returns and of marks.
+#[test]
+fn a_track_that_is_called_otherwise_is_read_by_the_names_of_the_robot_file() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("own");
+    let robot = "[robot]\nwheelbase_m = 0.34\nwheel_diameter_m = 0.15\nticks_per_revolution = 2000\n\n[columns]\nx_ref_mm = \"px\"\ny_ref_mm = \"py\"\nx_abs_m = \"end x\"\n";
+    std::fs::create_dir_all(folder.join("runs")).unwrap();
+    std::fs::create_dir_all(folder.join("reference")).unwrap();
+    std::fs::write(folder.join("robot.toml"), robot).unwrap();
+    std::fs::write(folder.join("returns.csv"), "direction,run,end x,y_abs_m,x_calc_m,y_calc_m\nccw,2,0.1,0.2,0,0\n")
+        .unwrap();
+    // It stands, drives, stands, drives and stands, 5 mm in 0.1 s.
+    let driven = |i: i32| (i - 20).clamp(0, 60) + (i - 110).clamp(0, 90);
+    let table = |header: &str, row: &dyn Fn(i32) -> String| {
+        (0..240)
+            .map(|i| format!("{},{}\n", 0.1 * f64::from(i), row(i)))
+            .fold(format!("{header}\n"), |all, row| all + &row)
+    };
+    let ticks = |i: i32| (f64::from(driven(i)) * 0.005 / (0.15 * std::f64::consts::PI) * 2000.0).round();
+    let log = table("t_s,ticks_left,ticks_right", &|i| format!("{},{}", ticks(i), ticks(i)));
+    std::fs::write(folder.join("runs").join("ccw_01.csv"), log).unwrap();
+    let track = table("t_s,px,py", &|i| format!("{},0", 5 * driven(i)));
+    std::fs::write(folder.join("reference").join("ccw_01.csv"), track).unwrap();
+    let data = crate::load(&folder).unwrap();
+    let far = logs(&data)[0].reference.iter().map(|pose| pose.x.hypot(pose.y)).fold(0.0, f64::max);
+    assert!((far - 0.75).abs() < 1e-3, "{far}");
+    assert!((data.runs[1].returned.unwrap().x - 0.1).abs() < 1e-12);
+}
+
 #[test]
 fn optiodom_holds_every_log_with_a_pose_in_every_row() {
     let data = dataset(1);

@@ -67,7 +67,10 @@ impl LogColumns {
             format!(" of a robot with drive = \"{}\"", kind.name())
         };
         let (last, others) = counters.split_last().map_or(("", &[][..]), |(last, others)| (last.as_str(), others));
-        let needs = format!("a tick log{of} needs t_s, {} and {last}", others.join(", "));
+        let needs = format!(
+            "a tick log{of} needs t_s, {} and {last}, or lines in [columns] of robot.toml that say what these are called",
+            others.join(", ")
+        );
         let time = columns.need("t", Time, &needs)?;
         let counts =
             counters.iter().map(|counter| columns.need(counter, Bare, &needs)).collect::<Result<Vec<_>, _>>()?;
