@@ -244,7 +244,14 @@ mod tests {
         let of = |value: f64| {
             let repeats = Some(Repeating { value, interval: Some(Interval::around(value, 0.5 * value)) });
             let position = Left { rms: 1e-3, repeats };
-            let remains = Remains { position, heading: None, pairs: 3, chance: Vec::new(), disturbances: Vec::new() };
+            let remains = Remains {
+                position,
+                heading: None,
+                pairs: 3,
+                piece: None,
+                chance: Vec::new(),
+                disturbances: Vec::new(),
+            };
             Reason::of_remains(&remains, [1e-4, 1e-4]).is_some()
         };
         assert!(of(3e-4) && !of(1.9e-4));

@@ -103,6 +103,8 @@ pub struct Remains {
     pub heading: Option<Left>,
     /// How many pairs of runs drive one path.
     pub pairs: usize,
+    /// Mean duration of the pieces of long runs that these are errors of \[s\]: each begins at a START of its own. `None` for whole runs.
+    pub piece: Option<f64>,
     /// Error that noise alone would leave, by source; empty for return poses.
     pub chance: Vec<Chance>,
     /// Places where a run is disturbed by more than that: accidental bumps, and wrong poses.
@@ -211,6 +213,7 @@ impl Remains {
             position: left(0),
             heading: with_heading.then(|| left(1)),
             pairs: count,
+            piece: None,
             chance: Vec::new(),
             disturbances: Vec::new(),
         }
@@ -229,7 +232,10 @@ impl Remains {
             let parts = parts.iter().filter_map(|(left, unit)| Some(unit.text(of(&left.repeats?)?)));
             parts.collect::<Vec<_>>().join(" and ")
         };
-        let left = parts.iter().map(|(left, unit)| unit.text(left.rms)).collect::<Vec<_>>().join(" and ");
+        let mut left = parts.iter().map(|(left, unit)| unit.text(left.rms)).collect::<Vec<_>>().join(" and ");
+        if let Some(seconds) = self.piece {
+            left += &format!(" in pieces of {seconds:.0} s, each from a START of its own");
+        }
         let pairs = match self.pairs {
             0 => {
                 return format!(
@@ -442,6 +448,10 @@ mod tests {
             said.contains("The part that repeats in every run is at least ") && said.contains("20 pairs"),
             "{said}"
         );
+        assert!(!said.contains("in pieces"), "{said}");
+        let of_pieces = Remains { piece: Some(41.6), ..remains };
+        let said = &of_pieces.sentences()[0];
+        assert!(said.contains(" deg in pieces of 42 s, each from a START of its own. The part"), "{said}");
     }
 
     #[test]

@@ -214,6 +214,13 @@ impl Observed {
         observed
     }
 
+    /// Mean duration of the pieces that long runs were cut into \[s\], where there are any.
+    pub(crate) fn piece(&self) -> Option<f64> {
+        let pieces = self.runs.iter().filter(|run| run.name != run.log);
+        let (sum, count) = pieces.fold((0.0, 0), |(sum, count), piece| (sum + pieces::duration(piece), count + 1));
+        (count > 0).then(|| sum / f64::from(count))
+    }
+
     /// Whether a heading was measured anywhere.
     pub(crate) fn has_headings(&self) -> bool {
         self.runs.iter().any(|run| run.blocks.iter().any(|block| block.headings > 0))

@@ -73,6 +73,8 @@ pub struct Remains {
     pub repeats_rad: Option<Repeats>,
     /// Number of pairs of runs for these.
     pub pairs_of_one_path: usize,
+    /// Mean duration, in s, of the pieces of long runs that these are errors of, each from a START of its own; null for whole runs.
+    pub piece_s: Option<f64>,
     /// Error that each source of noise alone would cause; empty for return poses.
     pub chance: Vec<Chance>,
     /// Accidental bumps and slips, and wrong poses of the reference.
@@ -103,6 +105,7 @@ impl From<&diagnose::Remains> for Remains {
             left_rad: heading.and_then(|left| finite(left.rms)),
             repeats_rad: heading.and_then(Repeats::of),
             pairs_of_one_path: remains.pairs,
+            piece_s: remains.piece,
             chance: remains.chance.iter().map(chance).collect(),
             disturbances: remains.disturbances.iter().map(disturbance).collect(),
         }

@@ -36,6 +36,7 @@ pub(super) fn remains(
     let mut remains = Remains::of(&trails, 1.0 - options.size);
     remains.position.rms = misses.position;
     remains.heading.iter_mut().zip(misses.heading).for_each(|(left, rms)| left.rms = rms);
+    remains.piece = observed.piece();
     remains.chance = chance(observed, noise, options.seed);
     let tick = observed.robot.metres_per_tick();
     let ticks = TICKS * tick.left.abs().max(tick.right.abs());

@@ -3,13 +3,15 @@
 //! Noise that is fitted from step to step hardly grows where a whole run is 0.3 % longer than the next, and the interval of the common value is that
 //! of one value for all runs. So each run's own values are compared.
 //!
-//! Source: Cochran (1954), Biometrics 10, 101 (Q); DerSimonian & Laird (1986), Controlled Clinical Trials 7, 177 (the variance between runs).
+//! Source: Cochran (1954), Biometrics 10, 101 (Q); DerSimonian & Laird (1986), Controlled Clinical Trials 7, 177 (the variance between runs);
+//! Kendall (1938), Biometrika 30, 81 (the test for a trend).
 
 use super::doubts::REMEMBERS;
 use super::examination::Examination;
 use super::odd::{first_columns, products_of, steps};
 use crate::diagnose::reason::Reason;
 use crate::evidence::tracks::Misses;
+use crate::path::Direction;
 use crate::stats::chi_squared_upper_tail;
 use nalgebra::{DMatrix, DVector};
 
@@ -21,6 +23,8 @@ const SURE: [f64; 2] = [1e-4, 1e-2];
 const LEAST: f64 = 5e-4;
 /// ... and the share by which errors along the way fall at least with each run's own values.
 const LEAST_FALL: f64 = 0.2;
+/// Maximum p of a trend in the order of the runs.
+const TREND: f64 = 0.01;
 
 /// A first effect that differs from run to run.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,17 +37,36 @@ pub struct Unequal {
     pub range: [f64; 2],
     /// How many runs tell it.
     pub runs: usize,
+    /// By how much it rises from the first run of a direction to the last, where it rises or falls in their order.
+    pub trend: Option<f64>,
+    /// Whether they are pieces of long runs.
+    pub pieces: bool,
 }
 
 impl Unequal {
     /// In a sentence, without a full stop.
     pub fn sentence(&self) -> String {
-        let Unequal { effect, deviation, range: [least, most], runs } = self;
-        format!(
-            "{effect} differs from run to run, by more than noise: {least:.5} to {most:.5} in {runs} runs, standard deviation {:.2} %. The fitted \
-             number is their mean. What changed between the runs: floor, load, tyres, battery, reference? Give runs of one kind as a dataset of \
-             their own",
+        let Unequal { effect, deviation, range: [least, most], runs, trend, pieces } = self;
+        let run = if *pieces { "piece" } else { "run" };
+        let of = if *pieces { " of long runs" } else { "" };
+        let told = format!(
+            "{effect} differs from {run} to {run}{of}, by more than noise: {least:.5} to {most:.5} in {runs} {run}s, standard deviation {:.2} %. The \
+             fitted number is their mean",
             100.0 * deviation
+        );
+        if let Some(rise) = trend {
+            let rises = if *rise > 0.0 { "rises" } else { "falls" };
+            return format!(
+                "{told}. It {rises} in their order, by about {:.2} % from the first to the last, as with wheels that wear, warm up or lose air, or with a \
+                 load that shifts",
+                100.0 * rise.abs()
+            );
+        }
+        if *pieces {
+            return format!("{told}. Something changed between the pieces: floor, load, tyres, battery or reference");
+        }
+        format!(
+            "{told}. What changed between the runs: floor, load, tyres, battery, reference? Give runs of one kind as a dataset of their own"
         )
     }
 
@@ -87,6 +110,25 @@ impl Estimates {
         }
     }
 
+    /// By how much they rise from the first to the last, where ranks and order agree by more than chance within each of these groups.
+    fn trend(&self, groups: &[Option<Direction>]) -> Option<f64> {
+        let (mut agreement, mut variance, mut along, mut whole, mut longest) = (0.0, 0.0, 0.0, 0.0, 0.0_f64);
+        for group in [None, Some(Direction::Cw), Some(Direction::Ccw)] {
+            let own = groups.iter().zip(&self.steps).filter(|(of, _)| **of == group).map(|(_, step)| *step);
+            let own: Vec<f64> = own.collect();
+            let n = own.len() as f64;
+            let pairs = (0..own.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+            agreement += pairs.map(|(i, j)| (own[j] - own[i]).signum()).sum::<f64>();
+            variance += n * (n - 1.0) * (2.0 * n + 5.0) / 18.0;
+            let from_middle = |i: usize| i as f64 - 0.5 * (n - 1.0);
+            along += own.iter().enumerate().map(|(i, step)| from_middle(i) * step).sum::<f64>();
+            whole += (0..own.len()).map(|i| from_middle(i).powi(2)).sum::<f64>();
+            longest = longest.max(n - 1.0);
+        }
+        let square = (agreement.abs() - 1.0).max(0.0).powi(2) / variance;
+        (chi_squared_upper_tail(square, 1.0) <= TREND).then_some(longest * along / whole)
+    }
+
     /// The standard deviation between runs.
     fn between(&self) -> f64 {
         let (q, _) = self.spread();
@@ -123,7 +165,10 @@ pub(super) fn unequal(exam: &Examination) -> Option<Reason> {
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], step| [low.min(value + step), high.max(value + step)]);
     (fall(exam, &columns, &told) >= LEAST_FALL).then(|| {
         let effect = exam.name(columns[place]).unwrap_or_default();
-        Reason::RunsDiffer(Unequal { effect, deviation: all[place].between(), range, runs })
+        let observed = &exam.fitted.observed;
+        let groups = observed.runs.iter().zip(&told).filter(|(_, told)| told.is_some()).map(|(run, _)| run.direction);
+        let (trend, pieces) = (all[place].trend(&groups.collect::<Vec<_>>()), observed.piece().is_some());
+        Reason::RunsDiffer(Unequal { effect, deviation: all[place].between(), range, runs, trend, pieces })
     })
 }
 
@@ -179,6 +224,8 @@ mod tests {
         assert!((3e-3..7e-3).contains(&told.deviation), "{told:?}");
         assert!((told.range[1] - told.range[0] - 0.012).abs() < 2e-3, "{told:?}");
         assert!((told.variance() - told.deviation.powi(2) / 6.0).abs() < 1e-18);
+        assert_eq!((told.trend, told.pieces), (None, false));
+        assert!(told.sentence().ends_with("reference? Give runs of one kind as a dataset of their own"));
         assert_eq!(of_scales(&[1.0, 1.01]).1, []);
         assert_eq!(of_scales(&[]).1, []);
     }
@@ -192,5 +239,18 @@ mod tests {
         assert!((four.between().powi(2) / (2e-5 / 3.0 - 1e-8) - 1.0).abs() < 1e-9);
         assert_eq!(four.without_farthest().steps.len(), 3);
         assert_eq!(estimates(&[1e-5, -1e-5, 0.0]).between(), 0.0);
+        // Six in order: p = 0.0085 by the normal approximation with continuity, of five 0.027.
+        let one_way = [None; 6];
+        let rising = [0.0, 1e-3, 2e-3, 3e-3, 4e-3, 5e-3];
+        assert!((estimates(&rising).trend(&one_way).unwrap() - 5e-3).abs() < 1e-15);
+        assert!((estimates(&rising.map(|step| -step)).trend(&one_way).unwrap() + 5e-3).abs() < 1e-15);
+        assert_eq!(estimates(&rising[..5]).trend(&one_way[..5]), None);
+        assert_eq!(estimates(&[0.0, 1e-3, 2e-3, 3e-3, 5e-3, 4e-3]).trend(&one_way), None);
+        // Five each way that rise, the later direction far below; and two directions that differ without a trend.
+        let directions = [[Some(Direction::Cw); 5], [Some(Direction::Ccw); 5]].concat();
+        let both: Vec<f64> = (0..10).map(|i| 1e-3 * f64::from(i % 5) - 0.1 * f64::from(i / 5)).collect();
+        assert!((estimates(&both).trend(&directions).unwrap() - 4e-3).abs() < 1e-15);
+        let apart: Vec<f64> = (0..10).map(|i| 1e-5 * f64::from(i * 7 % 5) + 0.1 * f64::from(i / 5)).collect();
+        assert_eq!(estimates(&apart).trend(&directions), None);
     }
 }

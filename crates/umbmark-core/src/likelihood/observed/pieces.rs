@@ -43,7 +43,8 @@ pub(super) fn of_about(run: &ObservedRun, seconds: f64, robot: &Robot) -> Vec<Ob
     if count > 1.0 { in_pieces(run, count as usize, robot) } else { vec![run.clone()] }
 }
 
-fn duration(run: &ObservedRun) -> f64 {
+/// From the first measurement to the last \[s\].
+pub(super) fn duration(run: &ObservedRun) -> f64 {
     let sights = run.track.sights();
     sights.last().zip(sights.first()).map_or(0.0, |(last, first)| last.time - first.time)
 }
@@ -106,4 +107,29 @@ fn piece(run: &ObservedRun, own: Range<usize>, robot: &Robot) -> Option<Observed
     let mut piece = ObservedRun::laid(&run.log, run.direction, track, seen, &model);
     piece.name = format!("{}, {from:.0} to {to:.0} s", run.log);
     (piece.blocks.len() >= FEWEST).then_some(piece)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::likelihood::Observed;
+    use crate::likelihood::watched::watched_on;
+    use crate::path::Path;
+
+    #[test]
+    fn a_single_long_run_is_judged_in_pieces_whose_duration_is_known() {
+        let robot = Robot::labmate();
+        let mut data = watched_on(&Path::umbmark(), &Model::new(&robot), 1, 3);
+        assert_eq!(Observed::new(&data, &robot).unwrap().piece(), None);
+        data.runs.truncate(1);
+        let observed = Observed::new(&data, &robot).unwrap();
+        let times = &data.runs[0].log.as_ref().unwrap().time;
+        let whole = times[times.len() - 1] - times[0];
+        let piece = observed.piece().unwrap();
+        assert!(observed.runs.len() > 1 && whole > LONG[1], "{} {whole}", observed.runs.len());
+        assert!(
+            (piece * observed.runs.len() as f64 - whole).abs() < 0.1 * whole && piece >= SHORTEST,
+            "{piece} {whole}"
+        );
+    }
 }
