@@ -25,6 +25,8 @@ pub type Shapes = [Option<(&'static str, f64)>; MAX_SHAPES];
 pub struct Derived {
     /// The chain: lane k carries the derivative by the k-th of `numbers`.
     pub chain: Chain<Dual>,
+    /// The same without derivatives.
+    pub plain: Chain<f64>,
     /// Places in the list.
     pub numbers: Vec<usize>,
     /// Whether they change only the measurement, so that no motion must be replayed.
@@ -82,6 +84,7 @@ impl Model {
         };
         let places: Vec<usize> = numbers.iter().map(place).collect::<Result<_, _>>()?;
         let seen_only = numbers.iter().all(|index| list[*index].seen_only());
-        Ok(Derived { chain: with.chain_with(&seeded(with.values(), &places)), numbers, seen_only })
+        let (chain, plain) = (with.chain_with(&seeded(with.values(), &places)), with.chain());
+        Ok(Derived { chain, plain, numbers, seen_only })
     }
 }

@@ -99,9 +99,9 @@ impl Observed {
 
     /// The same by numbers that change only the measurement, for the model about which the runs are linearised.
     fn columns_of_sight(&self, model: &Model, values: &[usize]) -> Vec<Vec<Column>> {
-        let chains: Vec<_> = model.chains(values).collect();
-        let of_run =
-            |run: &ObservedRun| chains.iter().flat_map(|(chain, count)| run.columns_of_sight(chain, *count)).collect();
+        let (plain, chains) = (model.chain(), model.chains(values).collect::<Vec<_>>());
+        let of_chain = |run: &ObservedRun, (chain, count): &(_, usize)| run.columns_of_sight((&plain, chain), *count);
+        let of_run = |run: &ObservedRun| chains.iter().flat_map(|chain| of_chain(run, chain)).collect();
         self.runs.par_iter().map(of_run).collect()
     }
 
@@ -131,9 +131,10 @@ impl ObservedRun {
     /// One column for each of `count` numbers, at the model about which the run is linearised.
     pub(crate) fn columns_of(&self, derived: &[Derived], count: usize) -> Vec<Column> {
         let mut columns = vec![Column::new(); count];
-        for Derived { chain, numbers, seen_only } in derived {
+        for Derived { chain, plain, numbers, seen_only } in derived {
             let count = numbers.len();
-            let own = if *seen_only { self.columns_of_sight(chain, count) } else { self.columns(chain, count) };
+            let own =
+                if *seen_only { self.columns_of_sight((plain, chain), count) } else { self.columns(chain, count) };
             numbers.iter().zip(own).for_each(|(number, column)| columns[*number] = column);
         }
         columns

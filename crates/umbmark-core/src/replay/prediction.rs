@@ -31,9 +31,14 @@ impl Track {
             return self.replay_trucks(convoy, chain, &Pose2::IDENTITY.lift(), seen);
         }
         if chain.has_clock() || chain.filter().is_some() {
-            return self.replay_late(chain, self.start(chain), |observation, pose, sight| {
-                seen(observation, &chain.seen(sight, pose));
-            });
+            return self.replay_late(
+                (chain, chain),
+                self.start(chain),
+                |pose| *pose,
+                |observation, pose, sight| {
+                    seen(observation, &chain.seen(sight, pose));
+                },
+            );
         }
         let mut pose = self.start(chain);
         let mut made = 0;
@@ -44,11 +49,29 @@ impl Track {
         }
     }
 
-    /// The same by a reference that is late or filtered: calls `seen` with the true pose at the moment that each measurement shows.
-    fn replay_late<T: Evaluate>(
+    /// The same by two chains: the robot is driven by the first, which carries no derivatives, and seen by the second, whose derivatives are
+    /// those of the measurement only.
+    pub(crate) fn replay_sight<T: Evaluate>(
         &self,
+        driven: &Chain<f64>,
         chain: &Chain<T>,
-        from: Pose2<T>,
+        mut seen: impl FnMut(usize, &Pose2<T>),
+    ) {
+        if self.convoy.is_some() {
+            return self.replay(chain, seen);
+        }
+        self.replay_late((driven, chain), self.start(driven), Pose2::lift, |observation, pose, sight| {
+            seen(observation, &chain.seen(sight, pose));
+        });
+    }
+
+    /// The same by a reference that is late or filtered: calls `seen` with the true pose at the moment that each measurement shows. The robot is
+    /// driven by one chain and seen by another.
+    fn replay_late<D: Evaluate, T: Evaluate>(
+        &self,
+        (driven, chain): (&Chain<D>, &Chain<T>),
+        from: Pose2<D>,
+        lift: impl Fn(&Pose2<D>) -> Pose2<T>,
         mut seen: impl FnMut(usize, &Pose2<T>, &Sight),
     ) {
         let (mut pose, mut made, mut moments) = (from, 0, Moments::new(self));
@@ -58,14 +81,14 @@ impl Track {
             // Beyond the end of a log, its last piece continues.
             let whole = moment.made.max(made);
             pose = match &mut behind {
-                Some(behind) => self.drive_before(chain, pose, made..whole, behind),
-                None => self.drive(chain, pose, made..whole),
+                Some(behind) => self.drive_before(driven, pose, made..whole, (&lift, behind)),
+                None => self.drive(driven, pose, made..whole),
             };
             made = whole;
             let mut there = pose;
             if moment.share != 0.0 {
                 let (travel, at) = (&self.travel[moment.made], &self.contexts[moment.made]);
-                let motion = chain.displacement(&at.at_pose(&pose), travel);
+                let motion = driven.displacement(&at.at_pose(&pose), travel);
                 let share = moment.share - (whole - moment.made) as f64;
                 there.advance(&Displacement2 {
                     forward: motion.forward * share,
@@ -76,12 +99,13 @@ impl Track {
             if let Some(mut behind) = behind {
                 let time = moment.sight.time - moment.sight.late;
                 if moment.share != 0.0 {
-                    behind.goes(&self.contexts[moment.made], (&pose, &there), time);
+                    behind.goes(&self.contexts[moment.made], (&lift(&pose), &lift(&there)), time);
                 }
                 behind.rest(time);
-                there = behind.seen(&there);
+                seen(observation, &behind.seen(&lift(&there)), &moment.sight);
+                continue;
             }
-            seen(observation, &there, &moment.sight);
+            seen(observation, &lift(&there), &moment.sight);
         }
     }
 
@@ -94,9 +118,14 @@ impl Track {
             return poses;
         }
         if chain.has_clock() || chain.filter().is_some() {
-            self.replay_late(chain, room.compose(&chain.start()), |_, pose, sight| {
-                poses.push(room.inverse().compose(&chain.seen(sight, pose)));
-            });
+            self.replay_late(
+                (chain, chain),
+                room.compose(&chain.start()),
+                |pose| *pose,
+                |_, pose, sight| {
+                    poses.push(room.inverse().compose(&chain.seen(sight, pose)));
+                },
+            );
             return poses;
         }
         let mut pose = room.compose(&chain.start());
@@ -136,17 +165,17 @@ impl Track {
     }
 
     /// The same as [`Track::drive`], before a filtered measurement.
-    fn drive_before<T: Evaluate>(
+    fn drive_before<D: Evaluate, T: Evaluate>(
         &self,
-        chain: &Chain<T>,
-        from: Pose2<T>,
+        chain: &Chain<D>,
+        from: Pose2<D>,
         pieces: std::ops::Range<usize>,
-        behind: &mut Behind<T>,
-    ) -> Pose2<T> {
+        (lift, behind): (impl Fn(&Pose2<D>) -> Pose2<T>, &mut Behind<T>),
+    ) -> Pose2<D> {
         let mut pose = from;
         for piece in pieces {
             let (to, at) = (self.drive(chain, pose, piece..piece + 1), &self.contexts[piece]);
-            behind.goes(at, (&pose, &to), at.time + at.duration);
+            behind.goes(at, (&lift(&pose), &lift(&to)), at.time + at.duration);
             pose = to;
         }
         pose

@@ -38,9 +38,13 @@ impl ObservedRun {
         (slopes, self.residual_steps(left.of_lane(0)))
     }
 
-    /// Derivatives by numbers that change only the measurement, at the model about which the run is linearised.
-    pub fn columns_of_sight(&self, chain: &Chain<Dual>, count: usize) -> Vec<Column> {
-        self.slopes(count, |seen| self.sighted(chain, seen))
+    /// Derivatives by numbers that change only the measurement, at the model about which the run is linearised: by its chain without
+    /// derivatives, and that with them.
+    pub fn columns_of_sight(&self, (plain, chain): (&Chain<f64>, &Chain<Dual>), count: usize) -> Vec<Column> {
+        self.slopes(count, |seen| match chain.filter() {
+            Some(_) => self.track.replay_sight(plain, chain, seen),
+            None => self.sighted(chain, seen),
+        })
     }
 
     fn slopes(&self, count: usize, predicted: impl FnOnce(&mut dyn FnMut(usize, &Pose2<Dual>))) -> Vec<Column> {
