@@ -719,6 +719,9 @@ class Remains(Record, frozen=True):
         headings were measured.
     pairs_of_one_path : int
         Number of pairs of runs for these.
+    piece_s : float or None
+        Mean duration, in s, of the pieces of long runs that these are errors of, each from a START
+        of its own; None for whole runs.
     chance : tuple[Chance, ...]
         Error that each source of noise alone would cause; empty for return poses.
     disturbances : tuple[Disturbance, ...]
@@ -730,6 +733,7 @@ class Remains(Record, frozen=True):
     left_rad: float | None
     repeats_rad: Repeats | None
     pairs_of_one_path: int
+    piece_s: float | None
     chance: tuple[Chance, ...]
     disturbances: tuple[Disturbance, ...]
 
