@@ -152,7 +152,7 @@ mod tests {
                 parameter,
                 value,
                 standard_error,
-                degrees_of_freedom: f64::INFINITY,
+                degrees_of_freedom: 1e4,
             };
             let estimates = [
                 of("scale", "e_s", 1.001, e_s),
