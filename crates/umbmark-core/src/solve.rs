@@ -35,6 +35,9 @@ use crate::learn::{Learnt, learn_from};
 use crate::setup::Fault;
 use crate::watch::Watch;
 
+/// A length is vague where its interval reaches farther than this share of it either way: any tape measures nearer.
+const VAGUE: f64 = 0.1;
+
 /// The one answer about a measured robot.
 #[derive(Clone, Debug)]
 pub struct Solution {
@@ -121,7 +124,7 @@ impl Solution {
         }
         let evidence = AnyEvidence::of(data, options.level(data))?;
         let off = Meter::new(data, &evidence).map(|meter| Off::of(&meter, &learnt));
-        let others = others::of(&evidence, &learnt, options.size);
+        let others = if learnt.partial { Vec::new() } else { others::of(&evidence, &learnt, options.size) };
         let (mut changes, needed) = numbers::of(&learnt, &others, options.size);
         if let Some(off) = &off {
             numbers::share(&mut changes, off, &learnt.model);
@@ -140,9 +143,30 @@ impl Solution {
     }
 
     /// Whether the new numbers may be written: the model explains the runs, the data are in order, and they neither
-    /// [mislead alone](Solution::misleads_alone) nor [make it worse](Solution::makes_worse).
+    /// [mislead alone](Solution::misleads_alone) nor [make it worse](Solution::makes_worse) nor are [vague](Solution::vague) or
+    /// [outweighed](Solution::outweighed).
     pub fn is_trusted(&self) -> bool {
-        !self.learnt.is_in_doubt() && !self.misleads_alone() && !self.makes_worse()
+        let is_good = !self.misleads_alone() && !self.makes_worse();
+        !self.learnt.is_in_doubt() && is_good && self.vague().next().is_none() && self.outweighed().is_none()
+    }
+
+    /// What laws outside the catalogue are worth in these runs, and what the new numbers are \[m\], where the laws are worth more: their
+    /// cause is not known, and a part of it may be in the numbers.
+    pub fn outweighed(&self) -> Option<[f64; 2]> {
+        let off = self.off.as_ref().filter(|_| self.needed)?;
+        let is_law =
+            |part: &&Part| self.learnt.steps.iter().any(|step| step.added == Some(part.name) && step.law.is_some());
+        let laws: f64 = off.known.iter().filter(is_law).map(|part| part.worth).sum();
+        let numbers = off.driven - off.reference.iter().map(|part| part.worth).sum::<f64>() - off.with_numbers;
+        (laws > words::TOLD * off.driven && laws > numbers).then_some([laws, numbers])
+    }
+
+    /// New lengths with intervals so wide that a tape tells more.
+    pub fn vague(&self) -> impl Iterator<Item = &Change> {
+        let is_length = |change: &&Change| change.key.ends_with("_m") && !change.key.ends_with("_per_m");
+        let half = |change: &Change| change.interval.map_or(0.0, |interval| 0.5 * (interval.high - interval.low));
+        let is_vague = move |change: &&Change| half(change) > VAGUE * change.new.abs();
+        self.changes.iter().filter(|_| self.needed).filter(is_length).filter(is_vague)
     }
 
     /// Whether the new numbers, of a model without further effects, leave a larger error in these runs than there is.

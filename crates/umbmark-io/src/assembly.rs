@@ -1,6 +1,7 @@
 //! Runs put together from return rows and logs.
 
 use super::RobotFile;
+use super::alike::told_once;
 use super::closures::{Closure, Marks, closures};
 use super::column_names::Renaming;
 use super::error::{At, DatasetError, LineProblem};
@@ -248,6 +249,7 @@ impl Assembly {
         runs.sort_by_key(|run| (run.test, run.direction, run.number));
         let sessions = Vec::new();
         let conditions = Vec::new();
+        let warnings = told_once(warnings);
         Ok(Dataset { robot, path, reference_frame, columns, runs, sessions, conditions, clocks, topics, warnings })
     }
 

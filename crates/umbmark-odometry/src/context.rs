@@ -97,6 +97,8 @@ pub struct Context<T = f64> {
     pub session_distance: f64,
     /// Path length since the last turn \[m\], or since START before the first turn.
     pub since_turn: f64,
+    /// Path length since the robot drove off \[m\]: after a turn, after it stood still or changed between ahead and back, or from START.
+    pub since_stop: f64,
     /// Path length of the piece \[m\]; negative if its counts are opposite to the direction of driving, as single counts can be.
     pub length: f64,
     /// Sense of the last turn: +1 to the left, -1 to the right, 0 before the first.
@@ -146,6 +148,7 @@ impl Context {
             time: self.time,
             session_distance: self.session_distance,
             since_turn: self.since_turn,
+            since_stop: self.since_stop,
             length: self.length,
             last_turn: self.last_turn,
             believed_heading: self.believed_heading,
@@ -212,6 +215,9 @@ const AWAY_FROM_TURN: f64 = 0.01;
 /// A wheel has reversed if it has rolled back by more than this \[m\] from its farthest point.
 const LEAST_REVERSAL: f64 = 0.5e-3;
 
+/// A robot has stopped where no wheel has rolled for so long \[s\].
+const STOOD: f64 = 0.2;
+
 /// Follows a run piece by piece and tracks the variables of effects, except the place in the room.
 #[derive(Clone, Debug)]
 pub struct Progress {
@@ -224,6 +230,10 @@ pub struct Progress {
     /// Rolling direction of each wheel, and its distance behind its farthest point \[m\].
     sense: [f64; 2],
     behind: [f64; 2],
+    /// The same of the axle's centre, and how long no wheel has rolled \[s\].
+    way_sense: f64,
+    way_behind: f64,
+    stood: f64,
     lag: Lag,
 }
 
@@ -290,6 +300,9 @@ impl Progress {
             gone: 0.0,
             sense: [0.0; 2],
             behind: [0.0; 2],
+            way_sense: 0.0,
+            way_behind: 0.0,
+            stood: 0.0,
             lag: Lag::default(),
         }
     }
@@ -350,6 +363,12 @@ impl Progress {
             let moves = wheels != [0.0; 2] || further.iter().flatten().any(|further| further.abs() > LEAST_MOVE);
             now.falls_behind = if moves { further } else { [[0.0; TIME_CONSTANTS.len()]; 2] };
         }
+        self.stood = if wheels == [0.0; 2] && aside == Aside::NONE { self.stood + duration } else { 0.0 };
+        let least = self.least_reversal[0].max(self.least_reversal[1]);
+        let turns_back = reversal(&mut self.way_sense, &mut self.way_behind, forward, least) != 0.0;
+        if self.stood >= STOOD || turns_back {
+            now.since_stop = 0.0;
+        }
         now.believed_heading = now.heading;
         let piece = *now;
         now.heading += rotation;
@@ -357,6 +376,7 @@ impl Progress {
         now.distance += now.length;
         now.session_distance += now.length;
         now.since_turn += now.length;
+        now.since_stop += now.length;
         now.time += duration;
         piece
     }
@@ -387,6 +407,7 @@ impl Progress {
         if self.turned.abs() > LEAST_TURN && self.gone == 0.0 {
             self.now.last_turn = self.turned.signum();
             self.now.since_turn = 0.0;
+            self.now.since_stop = 0.0;
         }
     }
 }
@@ -442,6 +463,24 @@ mod tests {
         assert!((seen[2].since_turn - 0.2).abs() < 1e-12 && (seen[14].since_turn - 0.1).abs() < 1e-12);
         assert!((seen[14].heading + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
         assert!((seen[14].distance - 0.4).abs() < 1e-12 && (seen[14].time - 1.4).abs() < 1e-12);
+    }
+
+    /// Ticks that come slowly are no stop; a stop of 0.2 s, a turn and a way back are.
+    #[test]
+    fn the_way_since_the_robot_drove_off_begins_anew_after_a_stop_and_on_the_way_back() {
+        let (on, off, back) = ((0.1, 0.1), (0.0, 0.0), (-0.1, -0.1));
+        let mut progress = Progress::new(&labmate(), &Place::default(), true);
+        let mut piece = |(left, right): (f64, f64)| {
+            let speeds = [10.0 * left, 10.0 * right];
+            progress.piece(&WheelTravel { left, right }, 0.1, speeds, speeds)
+        };
+        let seen = [on, on, off, on, on, off, off, on, on, back, back].map(&mut piece);
+        let ways: Vec<f64> = seen.iter().map(|at| (10.0 * at.since_stop).round()).collect();
+        assert_eq!(ways, [0.0, 1.0, 2.0, 2.0, 3.0, 4.0, 0.0, 0.0, 1.0, 0.0, 1.0]);
+        assert!((seen[8].since_turn - 0.5).abs() < 1e-12);
+        let quarter = 0.5 * 0.34 * std::f64::consts::FRAC_PI_2 / 10.0;
+        let turned = drive(&[&[on; 3][..], &[(quarter, -quarter); 10], &[on; 2]].concat());
+        assert!((turned[14].since_stop - 0.1).abs() < 1e-12);
     }
 
     #[test]

@@ -121,7 +121,6 @@ pub static LAWS: [Law; 37] = [
     Law::wheels::<Scale>(6, "scale", 1),
     Law::wheels::<WheelEccentricityLeft>(7, "wheel_eccentricity_left", 2),
     Law::wheels::<WheelEccentricityRight>(8, "wheel_eccentricity_right", 2),
-    Law::wheels::<DiameterDrift>(9, "diameter_drift", 2).of_speed(),
     Law::wheels::<CentripetalLoad>(10, "centripetal_load", 1).of_speed(),
     Law::wheels::<Backlash>(11, "backlash", 1),
     Law::body::<DriveScale>(12, "drive_scale", 1),
@@ -144,10 +143,12 @@ pub static LAWS: [Law; 37] = [
     Law::body::<TurnSlipRate>(29, "turn_slip_rate", 1).of_speed(),
     Law::body::<DirectionDependentWheelbase>(30, "direction_dependent_wheelbase", 1).of_speed(),
     Law::body::<CasterKick>(31, "caster_kick", 2).of_speed(),
-    Law::body::<LegKick>(32, "leg_kick", 2).of_speed(),
     Law::body::<FloorSlope>(33, "floor_slope", 4).of_speed(),
     Law::body::<FloorSlopeYaw>(34, "floor_slope_yaw", 4).of_speed(),
     Law::body::<CarpetNap>(35, "carpet_nap", 2).of_speed(),
     Law::wheels::<PlacedBumps>(36, "placed_bumps", 5).of_speed(),
     Law::wheels::<WheelLag>(37, "wheel_lag", 2),
+    // 9 and 32 were these with two numbers.
+    Law::wheels::<DiameterDrift>(38, "diameter_drift", 4).of_speed(),
+    Law::body::<LegKick>(39, "leg_kick", 3).of_speed(),
 ];

@@ -192,7 +192,8 @@ fn proposed_text(proposal: &Proposal, robot: &Path, folder: &Path, topics: &str)
         text += &hanging(
             "",
             2,
-            "none has absolute poses: measure where the robot ends by tape (returns.csv), or record its poses",
+            "none has columns of absolute poses: measure where the robot ends by tape (returns.csv), record its poses, or give the rates of a gyro \
+             (gyro_deg_s) or a TUM file of poses beside each log",
         );
     }
     for note in &proposal.notes {

@@ -59,7 +59,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     };
     let learnt = session.watched("% of the steps at most", |watch| learn_from(&data, &start, &options, watch))??;
     if learnt.partial {
-        session.message("partial", "stopped while an effect was still missing");
+        session.message("partial", "stopped before the search for missing effects ended");
     }
     let solution = session.on_threads(|| Solution::of(&data, learnt, &options))??;
     let learnt = &solution.learnt;

@@ -43,7 +43,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let start = Model::new(data.nominal_robot()?);
     let solution = session.watched("% of the steps at most", |watch| solve(&data, &start, &options, watch))??;
     if solution.learnt.partial {
-        session.message("partial", "stopped while an effect was still missing");
+        session.message("partial", "stopped before the search for missing effects ended");
     }
     let withheld = solution.learnt.is_in_doubt() && !arguments.force;
     if let Some(file) = arguments.output.as_ref().filter(|_| !withheld) {

@@ -118,6 +118,8 @@ pub enum Reason {
     RunsDiffer(Unequal),
     /// The data are in doubt.
     Data(Suspicion),
+    /// The search for missing effects was stopped before its end.
+    Stopped,
 }
 
 /// Counts may hide so many standard deviations of the counters' resolution.
@@ -156,6 +158,7 @@ impl Reason {
                 | Reason::FarFromTheRuns { .. }
                 | Reason::LeftOutFarWorse { .. }
                 | Reason::OddRun(_)
+                | Reason::Stopped
         );
         of_model || self.is_of_data()
     }
@@ -229,6 +232,9 @@ impl Reason {
             Reason::OddRun(odd) => odd.sentence(),
             Reason::RunsDiffer(unequal) => unequal.sentence(),
             Reason::Data(suspicion) => suspicion.sentence(),
+            Reason::Stopped => {
+                "the search for missing effects was stopped before its end: what it would have found is not in the numbers".into()
+            }
         }
     }
 }

@@ -245,8 +245,11 @@ impl Remains {
             1 => "one pair of runs of one path".to_owned(),
             pairs => format!("{pairs} pairs of runs of one path"),
         };
-        let most = told(&|repeats| Some(repeats.interval.map_or(repeats.value, |interval| interval.high)));
+        let most = told(&|repeats| Some(repeats.interval?.high));
         let shown = told(&|repeats| Some(repeats.interval?.low).filter(|low| *low > 0.0));
+        if most.is_empty() {
+            return format!("The model leaves {left}. What of it repeats in every run, {pairs} cannot show");
+        }
         if shown.is_empty() {
             return format!(
                 "The model leaves {left}. No part of it is shown to repeat in every run (at most {most}; {pairs})"

@@ -12,7 +12,12 @@ const NAMES: usize = 5;
 pub(super) fn sentence(watched: &Watched, arrived: &Arrived) -> String {
     let mut said = Vec::new();
     let since = watched.runs.len() - watched.begins;
-    let runs = format!("{} watched, {} of them new", counted(since, "run"), arrived.new.min(since));
+    let kept = watched.runs[watched.begins..].iter().filter(|run| !matches!(run.used, Use::LeftOut(_))).count();
+    let new = arrived.new.min(since);
+    let runs = match kept == since {
+        true => format!("{} watched, {new} of them new", counted(since, "run")),
+        false => format!("{}, {new} of them new, and {kept} of them watched", counted(since, "run")),
+    };
     match &watched.change {
         None => said.push(format!("{runs}: {}.", unchanged(watched))),
         Some(change) => {

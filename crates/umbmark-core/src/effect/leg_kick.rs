@@ -1,8 +1,8 @@
-//! A kick at the start of every leg.
+//! A kick whenever the robot drives off.
 
 use super::caster_kick::TRAIL;
 use super::words::{deg, mm, side};
-use super::{About, ActsOn, Effect, Entry};
+use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::Robot;
 use crate::parameter::Parameter;
 use umbmark_odometry::law::LegKick;
@@ -21,7 +21,15 @@ impl Effect for LegKick {
                 "rad",
                 3.5e-3,
                 (-1.0, 1.0),
-                "change of heading at the start of each leg, counter-clockwise",
+                "change of heading at the start of each leg ahead, counter-clockwise",
+            ),
+            Parameter::size(
+                "back_rad",
+                "leg-kick-back",
+                "rad",
+                3.5e-3,
+                (-1.0, 1.0),
+                "the same of each leg that is driven back",
             ),
             Parameter {
                 flag: "leg-kick-trail",
@@ -29,9 +37,9 @@ impl Effect for LegKick {
                 ..TRAIL
             },
         ],
-        equation: "Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn or START",
+        equation: "Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn, stop or START",
         physics: "One motor responds sooner than the other, one clutch engages later, or one caster is not aligned. The robot jerks to \
-                  the same side whenever it drives off.",
+                  the same side whenever it drives off: after a turn, and after a stop on the way.",
         signature: "The heading steps at the start of each of the four legs, with the same sign in ccw and cw. In return poses it looks \
                     like E_d, but it does not grow along the leg.",
         confused_with: &["wheel_diameter_ratio", "direction_dependent_wheelbase"],
@@ -40,16 +48,20 @@ impl Effect for LegKick {
     };
 
     fn means(p: &[f64], _robot: &Robot) -> String {
+        let back = match p[1] == 0.0 {
+            true => String::new(),
+            false => format!(" and, driving back, {} to the {}", deg(p[1]), side(p[1])),
+        };
         format!(
-            "Whenever it drives off the robot turns {} to the {}, most of it within {}.",
+            "Whenever it drives off the robot turns {} to the {}{back}, most of it within {}.",
             deg(p[0]),
             side(p[0]),
-            mm(p[1])
+            mm(p[2])
         )
     }
 
     fn varies(p: &[f64]) -> bool {
-        p[0] != 0.0
+        at_work(&p[..2])
     }
 }
 

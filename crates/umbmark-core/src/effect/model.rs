@@ -379,6 +379,16 @@ impl Model {
         self.parameters().nth(place)?.nothing()
     }
 
+    /// The usual size of one of the [values](Model::values), given by its index, where it is a shape of an effect of the catalogue.
+    pub(crate) fn usual_shape(&self, place: usize) -> Option<f64> {
+        let mut all = self.parts.iter().flat_map(|part| {
+            let is_listed = part.effect.entry().is_some();
+            part.effect.parameters().iter().map(move |parameter| (is_listed, parameter))
+        });
+        let (is_listed, parameter) = all.nth(place)?;
+        (is_listed && parameter.role == Role::Shape).then_some(parameter.typical)
+    }
+
     /// What the [values](Model::values) are values of.
     fn parameters(&self) -> impl Iterator<Item = &Parameter> {
         self.parts.iter().flat_map(|part| part.effect.parameters())

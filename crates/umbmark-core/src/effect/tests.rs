@@ -442,6 +442,7 @@ fn contexts() -> [Context; 2] {
         time: 20.0,
         session_distance: 40.0,
         since_turn: 0.02,
+        since_stop: 0.01,
         length: 0.02,
         last_turn: -1.0,
         believed_heading: 0.9,

@@ -2,7 +2,7 @@
 
 use super::story::{Error, Learnt, MOST_EFFECTS, Step};
 use crate::diagnose::ends::{self, Moments};
-use crate::diagnose::{Diagnosis, Options, Suspect};
+use crate::diagnose::{Diagnosis, Options, Reason, Suspect};
 use crate::drive::Robot;
 use crate::effect::{Model, Part};
 use crate::evidence::ends::{End, Fitted};
@@ -38,6 +38,7 @@ pub(super) fn learn(ends: &Ends, start: &Model, options: &Options, watch: &Watch
         let Some(suspect) = diagnosis.certified().first().cloned() else { break };
         partial = watch.is_stopped();
         if partial {
+            diagnosis.reasons.push(Reason::Stopped);
             break;
         }
         let why = match story.grown_by(&suspect, options) {

@@ -70,7 +70,7 @@ pub struct Learnt {
     pub diagnosis: Diagnosis,
     /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
-    /// Whether it was stopped while a certified effect could still be added.
+    /// Whether it was stopped before the search for missing effects ended.
     pub partial: bool,
 }
 

@@ -3,7 +3,7 @@
 use super::ends::{Story, free_part};
 use super::*;
 use crate::diagnose::tests::{margin, robot_with, simulated, trials};
-use crate::diagnose::{Options, Verdict, base_model};
+use crate::diagnose::{Options, Reason, Verdict, base_model};
 use crate::drive::Robot;
 use crate::evidence::{Ends, Fit, fit};
 use crate::likelihood::watched::watched;
@@ -142,8 +142,23 @@ fn learning_that_is_stopped_ends_with_the_step_that_it_is_at_and_says_so() {
     let stopped = Watch::new(&at_once, &|_| ());
     let part = learn_from(&data, &nominal, &options, &stopped).unwrap();
     let whole = learn(&data, &options).unwrap();
-    assert!(part.partial && part.steps.len() == 3 && part.verdict != Verdict::Explained);
+    assert!(part.partial && part.steps.len() == 3 && part.verdict != Verdict::Explained && part.is_in_doubt());
     assert!(!whole.partial && whole.steps.len() == 4 && whole.steps[..3] == part.steps);
+}
+
+/// Nothing is hidden here: a search that ends says so, and one that was stopped does not know it.
+#[test]
+fn learning_from_tracks_that_is_stopped_never_says_that_the_runs_are_explained() {
+    let data = watched(&robot_with(&[("wheelbase", "e_b", 1.004)]), 4, 7);
+    let nominal = Model::new(&Robot::labmate());
+    let verdict = |stop: bool| {
+        let stop = AtomicBool::new(stop);
+        let learnt = learn_from(&data, &nominal, &Options::default(), &Watch::new(&stop, &|_| ())).unwrap();
+        let reasons = learnt.diagnosis.reasons.clone();
+        (learnt.verdict, learnt.partial, learnt.is_in_doubt(), reasons)
+    };
+    assert_eq!(verdict(false), (Verdict::Explained, false, false, vec![]));
+    assert_eq!(verdict(true), (Verdict::NotExplained, true, true, vec![Reason::Stopped]));
 }
 
 /// Seed 62; a reference that is 80 ms late.

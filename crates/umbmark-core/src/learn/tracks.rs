@@ -99,7 +99,7 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
         step.p_adjusted = tracks::p_of_own(&search.exams[0], effect, options);
         remarks.extend(uncertified(effect, step, &before, options));
     }
-    let partial = watch.is_stopped() && search.left.effect.is_some();
+    let partial = search.stopped;
     // The fit of the beginning is reported unchanged if nothing was added.
     if let Some(own) = steps.last_mut() {
         let Step { added, class, p_adjusted, law, .. } = own.clone();
@@ -223,6 +223,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         remains = left.unwrap_or(remains);
         reasons.extend(tracks::of_usual_noise(&written.observed, &written.noise));
     }
+    reasons.splice(..0, search.stopped.then_some(Reason::Stopped));
     reasons.extend(against_as_written(&written.observed, &written.model, options));
     reasons.extend(misfits(&steps, runs, written.observed.setup.noise.position, is_nominal(&last.fitted)));
     let verdict = match (&left.smooth, more) {

@@ -217,8 +217,9 @@ impl Fitted {
         let fit = least_squares(&tracks, &start, options);
         let last = tracks.last.into_inner();
         let own = self.free.len();
-        self.covariance = fit.covariance().map(|all| all.view((0, 0), (own, own)).into_owned());
         self.model = self.model.with_values(&self.free, &fit.values[..own])?;
+        let covariance = fit.covariance().map(|all| all.view((0, 0), (own, own)).into_owned());
+        self.covariance = covariance.map(|covariance| within_usual_sizes(covariance, &self.model, &self.free));
         match last {
             Some(At { observed: Some(observed), slopes, reference }) if slopes.fit(&self.model, &self.free) => {
                 (self.observed, self.slopes, self.reference) = (observed, slopes, reference);
@@ -267,6 +268,27 @@ impl Fitted {
         DMatrix::from_row_slice(values.len() / width.max(1), width, &values)
     }
 }
+
+/// A covariance where shapes that the runs leave open are known to within their usual sizes.
+///
+/// A threshold below every speed that was driven may be any of these: it shifts E_d as it shifts, in the linear model without limit, and the
+/// interval of E_d would be as wide as the thresholds are that no robot has. A shape is open where its interval holds zero; its usual size is
+/// then a measurement of it with this standard deviation.
+fn within_usual_sizes(mut covariance: DMatrix<f64>, model: &Model, free: &[usize]) -> DMatrix<f64> {
+    let values: Vec<f64> = model.values().collect();
+    for (own, place) in free.iter().enumerate() {
+        let (value, variance) = (values[*place], covariance[(own, own)]);
+        let Some(usual) = model.usual_shape(*place).filter(|_| value * value < OPEN * OPEN * variance) else {
+            continue;
+        };
+        let column = covariance.column(own).into_owned();
+        covariance.ger(-1.0 / (variance + usual * usual), &column, &column, 1.0);
+    }
+    covariance
+}
+
+/// A shape is open where it is less than this many standard errors from zero.
+const OPEN: f64 = 2.0;
 
 /// Remark on values that were fitted with noise of the usual sizes.
 pub const USUAL_NOISE: &str = "Held-out runs are predicted better with noise of the usual sizes than with the fitted noise, which may have \
@@ -417,6 +439,30 @@ mod tests {
         let fitted = observed.fit(&first_model(&data).unwrap(), &Noise::default(), &[]).unwrap();
         let found = fitted.model.get("wheelbase", "e_b").unwrap();
         assert!((found - 0.95).abs() < 2e-4, "{found}");
+    }
+
+    /// Squares have one speed on every leg: a threshold of the speed below it and E_d make the same turn.
+    #[test]
+    fn a_threshold_that_the_runs_leave_open_is_known_to_its_usual_size_and_widens_e_d_by_no_more() {
+        let robot = Robot::labmate();
+        let mut model = Model::new(&robot);
+        model.set("missed_counts", "left_s_per_m", 0.02).unwrap();
+        model.set("missed_counts", "right_s_per_m", -0.02).unwrap();
+        model.set("missed_counts", "threshold_m_s", 1e-3).unwrap();
+        model.add("wheel_diameter_ratio").unwrap();
+        let free: Vec<usize> = (0..4).collect();
+        let correlated = |variance: f64| {
+            let slope = DVector::from_column_slice(&[0.0, 0.0, 1.0, 0.04]);
+            DMatrix::from_diagonal(&DVector::from_column_slice(&[1e-8, 1e-8, 0.0, 1e-10]))
+                + variance * &slope * slope.transpose()
+        };
+        // By hand: 70 m/s of threshold are 2.8 of E_d; its usual size of 0.1 m/s is 0.004.
+        let known = within_usual_sizes(correlated(4900.0), &model, &free);
+        assert!((known[(2, 2)].sqrt() - 0.1).abs() < 1e-5 && (known[(3, 3)].sqrt() - 0.004).abs() < 1e-5, "{known}");
+        assert_eq!((known[(0, 0)], known[(1, 1)]), (1e-8, 1e-8));
+        // A threshold that is shown stays as it was, and so does a size.
+        let shown = correlated(1e-8);
+        assert_eq!(within_usual_sizes(shown.clone(), &model, &free), shown);
     }
 
     #[test]

@@ -80,7 +80,7 @@ pub struct Learnt {
     pub sentence: String,
     /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
-    /// Whether it was stopped while an effect was still missing.
+    /// Whether it was stopped before the search for missing effects ended.
     pub partial: bool,
     /// False-alarm rate: probability that an effect is added to a complete model.
     pub size: f64,

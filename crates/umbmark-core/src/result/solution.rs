@@ -105,7 +105,7 @@ pub struct Solution {
     pub meaning: Keyed<String>,
     /// Findings about the data before any fit: faults, clock and mounting of the reference, jumps, wrong poses, outlying runs.
     pub setup: Setup,
-    /// Whether learning was stopped while an effect was still missing.
+    /// Whether learning was stopped before the search for missing effects ended.
     pub partial: bool,
     /// Probability with which an effect is added to a complete model; intervals hold with the rest.
     pub size: f64,

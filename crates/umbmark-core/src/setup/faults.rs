@@ -270,10 +270,12 @@ impl Fault {
             ),
             Fault::OtherMotion { .. } => "check whether each file has ticks and poses of the same drive".into(),
             Fault::ReturnsIn { unit: "mm", .. } => {
-                "write the unit into the names of the columns of returns.csv: ex_mm and ey_mm, or x_abs_mm, y_abs_mm, x_calc_mm and y_calc_mm".into()
+                "write the unit into the names of the columns: of returns.csv ex_mm and ey_mm, or x_abs_mm, y_abs_mm, x_calc_mm and y_calc_mm; of logs \
+                 x_ref_mm and y_ref_mm".into()
             }
             Fault::ReturnsIn { .. } => {
-                "write the unit into the names of the columns of returns.csv: ex_mm and ey_mm (or ex_cm and ey_cm); for poses x_abs_mm, y_abs_mm, x_calc_mm and y_calc_mm".into()
+                "write the unit into the names of the columns: of returns.csv ex_mm and ey_mm (or ex_cm and ey_cm), for poses x_abs_mm, y_abs_mm, \
+                 x_calc_mm and y_calc_mm; of logs x_ref_mm and y_ref_mm (or _cm)".into()
             }
             Fault::ReturnHeadingsInDegrees => {
                 "call the column etheta_deg in returns.csv, or the two columns theta_abs_deg and theta_calc_deg".into()

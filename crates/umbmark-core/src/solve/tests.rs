@@ -116,6 +116,44 @@ fn numbers_that_make_it_worse_are_not_to_be_written() {
 }
 
 #[test]
+fn lengths_that_a_tape_tells_better_are_not_to_be_written() {
+    let truth = [("wheel_diameter_ratio", "e_d", 1.002), ("wheelbase", "e_b", 0.97), ("scale", "e_s", 0.99)];
+    let mut answer = answer(&watched(&robot(&truth), 3, 5));
+    assert!(answer.is_trusted() && answer.vague().next().is_none());
+    // As if the wheels were known to 56 %, and then to 9 %.
+    let mut widen = |share: f64| {
+        for change in answer.changes.iter_mut().filter(|change| change.key.starts_with("wheel_diameter")) {
+            change.interval = Some(crate::stats::Interval::around(change.new, share * change.new));
+        }
+        (answer.is_trusted(), answer.sentence(), answer.doubt(), answer.next())
+    };
+    let (trusted, sentence, doubt, next) = widen(0.56);
+    let told = "These runs leave the wheel diameters open, by up to 56 % either way";
+    assert!(!trusted && sentence.contains(told) && doubt.is_some_and(|why| why.starts_with(told)), "{sentence}");
+    assert!(next.iter().all(|step| !step.contains("Write")), "{next:?}");
+    assert!(widen(0.09).0);
+}
+
+/// A law of the turn rate that no catalogue lists turns the robot by more than its wheels and wheelbase do.
+#[test]
+fn numbers_that_a_law_of_unknown_cause_outweighs_are_not_to_be_written() {
+    let mut truth = robot(&[("wheelbase", "e_b", 1.001)]);
+    let text = "a * sin(2 * pi * time / 17)";
+    let wave = crate::effect::Formula::new("own", crate::effect::Target::HeadingPerMetre, text, &["a"]).unwrap();
+    truth.add_formula(wave, &[0.03]).unwrap();
+    let mut answer = answer(&watched(&truth, 5, 3));
+    assert_eq!(answer.learnt.verdict, Verdict::UnlistedEffect);
+    answer.needed = true;
+    let [laws, numbers] = answer.outweighed().unwrap();
+    assert!(laws > numbers && !answer.is_trusted());
+    assert!(answer.sentence().ends_with("do not write them before it is found."), "{}", answer.sentence());
+    assert!(answer.next()[0].starts_with("Find the cause of the law"), "{:?}", answer.next());
+    // As if the numbers had been worth more.
+    answer.off.as_mut().unwrap().driven += 2.0 * laws;
+    assert!(answer.outweighed().is_none() && answer.is_trusted());
+}
+
+#[test]
 fn straight_runs_give_the_wheels_and_no_wheelbase() {
     let truth = [("wheel_diameter_ratio", "e_d", 1.002), ("wheelbase", "e_b", 0.97), ("scale", "e_s", 0.99)];
     let path = Path::new(&STRAIGHT, &[4.0], SpeedProfile::default()).unwrap();

@@ -1,6 +1,6 @@
 //! The answer in words.
 
-use super::{Measure, Off, Part, Solution};
+use super::{Change, Measure, Off, Part, Solution};
 use crate::diagnose::{Experiment, Reason, Verdict};
 use crate::effect::find;
 use crate::prose::counted;
@@ -60,16 +60,23 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
         let mut forbidding =
             solution.learnt.diagnosis.reasons.iter().filter(|reason| reason.forbids_writing()).peekable();
         let cause = match forbidding.peek().is_some() && forbidding.all(Reason::is_of_data) {
+            _ if solution.learnt.partial => "The search was stopped",
             true => "What was measured is in doubt",
             false => "No model explains these runs",
         };
         return vec![format!("{cause}, so do not write the new numbers below into the robot yet.")];
+    }
+    if let Some(vague) = vague(solution) {
+        return vec![vague];
     }
     if solution.misleads_alone() {
         return vec![alone(solution, off)];
     }
     if solution.makes_worse() {
         return vec![worse(off)];
+    }
+    if let Some(outweighed) = outweighed(solution) {
+        return vec![outweighed];
     }
     let known: f64 = off.known.iter().map(|part| part.worth).sum();
     let explained = verdict == Verdict::Explained;
@@ -94,7 +101,7 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
             1 => ("the new number".to_owned(), "it"),
             count => (format!("the {count} new numbers"), "them"),
         };
-        let (left, names) = (mm(off.with_numbers), listed(&names(solution)));
+        let (left, names) = (mm(off.with_numbers), listed(&names(&solution.changes)));
         let rest = if off.known.is_empty() { by_chance(off.with_numbers) } else { String::new() };
         let fall = off.driven - off.with_numbers;
         said.push(match fall > TOLD * off.driven {
@@ -151,6 +158,39 @@ fn only_fitted(solution: &Solution) -> usize {
     diagnosis.outliers.len().saturating_sub(diagnosis.setup.jumps().count())
 }
 
+/// That what no catalogue lists makes more of the error than the new numbers do, where it does.
+fn outweighed(solution: &Solution) -> Option<String> {
+    let [laws, numbers] = solution.outweighed()?;
+    let off = solution.off.as_ref()?;
+    let gain = match numbers > TOLD * off.driven {
+        true => format!(", and the new numbers {} of it", mm(numbers)),
+        false => ", and the new numbers hardly any of it".to_owned(),
+    };
+    Some(format!(
+        "{} of it follows {}{gain}. The cause of the law is not known, and a part of it may be in the numbers: do not write them \
+         before it is found.",
+        mm(laws),
+        titles(solution, &off.known)
+    ))
+}
+
+/// That some of the new numbers are known worse than by tape, where they are.
+fn vague(solution: &Solution) -> Option<String> {
+    let share = |change: &Change| {
+        let interval = change.interval?;
+        Some(0.5 * (interval.high - interval.low) / change.new.abs())
+    };
+    let widest = solution.vague().filter_map(share).fold(0.0, f64::max);
+    let named = listed(&names(solution.vague()));
+    (widest > 0.0).then(|| {
+        format!(
+            "These runs leave the {named} open, by up to {:.0} % either way, which any tape tells better: do not write the new \
+             numbers below.",
+            100.0 * widest
+        )
+    })
+}
+
 /// Why the new numbers are not to be written alone.
 fn alone(solution: &Solution, off: &Off) -> String {
     let these = match solution.changes.len() {
@@ -177,11 +217,21 @@ fn worse(off: &Off) -> String {
 
 /// Why the numbers of a model are not to be written, where they are not.
 pub(super) fn doubt(solution: &Solution) -> Option<String> {
+    if !solution.learnt.is_in_doubt()
+        && let Some(vague) = vague(solution)
+    {
+        return Some(vague);
+    }
     if !solution.learnt.is_in_doubt() && solution.misleads_alone() {
         return solution.off.as_ref().map(|off| alone(solution, off));
     }
     if !solution.learnt.is_in_doubt() && solution.makes_worse() {
         return solution.off.as_ref().map(worse);
+    }
+    if !solution.learnt.is_in_doubt()
+        && let Some(outweighed) = outweighed(solution)
+    {
+        return Some(outweighed);
     }
     let reasons = solution.learnt.diagnosis.reasons.iter().map(|reason| reason.sentence());
     let told = reasons.collect::<Vec<_>>().join("; ");
@@ -214,6 +264,8 @@ pub(super) fn next(solution: &Solution) -> Vec<String> {
     if solution.learnt.is_in_doubt() {
         next.extend(diagnosis.reasons.iter().map(|reason| capital(&format!("{}.", reason.sentence()))));
         next.push("Correct what is named above, or measure again; `umbmark inspect DATA` checks the data.".into());
+    } else if solution.vague().next().is_some() {
+        next.push("Drive more runs, with straights and turns both ways, and at several speeds.".into());
     } else if solution.misleads_alone() {
         next.push(
             "Let the robot compute its odometry by the whole model: `umbmark solve DATA -o model.toml`, then `umbmark export \
@@ -227,6 +279,12 @@ pub(super) fn next(solution: &Solution) -> Vec<String> {
         );
     } else if solution.makes_worse() {
         next.push("Drive more runs, with straights and turns both ways: these do not show numbers that help.".into());
+    } else if solution.outweighed().is_some() {
+        next.push(
+            "Find the cause of the law: `umbmark learn DATA` says how sure it is, which others do as well, and which drive tells \
+             them apart."
+                .into(),
+        );
     } else if solution.needed && !solution.changes.is_empty() {
         next.push(
             "Write the new numbers: `umbmark solve DATA -o model.toml`, then `umbmark export model.toml --to ros2_control -o \
@@ -301,9 +359,9 @@ fn titles(solution: &Solution, parts: &[Part]) -> String {
 }
 
 /// What the new numbers are called; two of which only the side differs are one.
-fn names(solution: &Solution) -> Vec<String> {
+fn names<'a>(changes: impl IntoIterator<Item = &'a Change>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for change in &solution.changes {
+    for change in changes {
         let name = without_unit(change.key);
         let both = ["_left", "_right"].into_iter().find_map(|side| name.strip_suffix(side));
         let name = both.map_or(name.to_owned(), |both| format!("{both}s")).replace('_', " ");

@@ -135,25 +135,26 @@ pub struct CasterKick;
 impl BodyLaw for CasterKick {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        motion.rotation += p[0] * faded(at, p[1]) * at.last_turn;
+        motion.rotation += p[0] * faded(at.since_turn, at.length, p[1]) * at.last_turn;
     }
 }
 
-/// The share of a kick within a piece: e^(-d₀/λ) - e^(-d₁/λ).
+/// The share of a kick within a piece of this length that begins so far behind the kick: e^(-d₀/λ) - e^(-d₁/λ).
 #[inline(always)]
-pub(super) fn faded<T: Real>(at: &Context<T>, trail: T) -> T {
+pub(super) fn faded<T: Real>(since: f64, length: f64, trail: T) -> T {
     let rate = -trail.recip();
-    (rate * at.since_turn).exponential() - (rate * (at.since_turn + at.length)).exponential()
+    (rate * since).exponential() - (rate * (since + length)).exponential()
 }
 
-/// A change of heading over the first way of each leg, always in the same sense.
+/// A change of heading over the first way after the robot drives off, one ahead and another back.
 ///
-/// `Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn or START`
+/// `Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn, stop or START`
 pub struct LegKick;
 
 impl BodyLaw for LegKick {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        motion.rotation += p[0] * faded(at, p[1]);
+        let kick = if at.speed < 0.0 { p[1] } else { p[0] };
+        motion.rotation += kick * faded(at.since_stop, at.length, p[2]);
     }
 }

@@ -76,20 +76,35 @@ impl WheelLaw for WheelEccentricityRight {
     }
 }
 
-/// A ratio of the wheel diameters that grows with the way driven, in the run and in the session.
+/// Wheel diameters that grow with the way driven: their ratio in the run and in the session, and their mean in the run.
 ///
-/// `s_R ← (1 + d/2) s_R,  s_L ← (1 - d/2) s_L,  d = k · way in the run + k' · way in the session`
+/// `s_R ← (1 + d/2 + m) s_R,  s_L ← (1 - d/2 + m) s_L,  d = k w + k' · way in the session,  m = k" w,  w = (1 - exp(-r · way in the run))/r`
 pub struct DiameterDrift;
 
 impl WheelLaw for DiameterDrift {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         let half = 0.5 * at.length;
-        let d = p[0] * (at.distance + half) + p[1] * (at.session_distance + half);
-        travel.left *= -d * 0.5 + 1.0;
-        travel.right *= d * 0.5 + 1.0;
+        let way = settled(at.distance + half, p[3]);
+        let d = p[0] * way + p[1] * (at.session_distance + half);
+        let mean = p[2] * way + 1.0;
+        travel.left *= mean - d * 0.5;
+        travel.right *= mean + d * 0.5;
     }
 }
+
+/// (1 - exp(-r s))/r: a way s \[m\] that counts less and less, at a rate r \[1/m\]; s itself where r is 0.
+#[inline(always)]
+fn settled<T: Real>(way: f64, rate: T) -> T {
+    let share = rate * way;
+    if share.value().abs() < NEARLY_NOTHING {
+        return (share * (share * (1.0 / 6.0) - 0.5) + 1.0) * way;
+    }
+    (-(-share).exponential() + 1.0) / rate
+}
+
+/// Below this, the series of [`settled`] is exact to 1e-13.
+const NEARLY_NOTHING: f64 = 1e-4;
 
 /// A difference of the wheel radii that grows with centripetal acceleration.
 ///

@@ -229,6 +229,9 @@ fn to_write(solution: &Solution) -> Tile {
         (_, false, _) if solution.makes_worse() => {
             ("nothing yet", "With these numbers, the error would be larger than as driven.".to_owned())
         }
+        (_, false, _) if !solution.learnt.is_in_doubt() => {
+            ("nothing yet", "These runs leave too much open for that: see the sentence above.".to_owned())
+        }
         (_, false, _) => ("nothing yet", "The runs are not explained, so these numbers are not to be trusted.".into()),
         (_, true, false) => ("nothing", "The numbers of the robot are right as far as these runs can show.".into()),
         (count, true, true) => {

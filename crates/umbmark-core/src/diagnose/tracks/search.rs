@@ -75,6 +75,8 @@ enum Growth {
     Idle,
     /// It is hardly separated from E_d, E_b and E_s and does not pay for that.
     Inseparable,
+    /// The search was stopped before that was known.
+    Stopped,
 }
 
 /// What may be added.
@@ -108,6 +110,8 @@ pub(crate) struct Search {
     refused_laws: Vec<String>,
     /// Whether a law that explains more than the effect that would be added could not be.
     law_failed: bool,
+    /// Whether it was stopped before its end.
+    pub stopped: bool,
 }
 
 /// Adds what is certified as missing and `wanted`, at most `most` effects and none of those `refused`. Each is fitted without
@@ -136,9 +140,10 @@ pub(crate) fn search(
         repeats: None,
         refused_laws: Vec::new(),
         law_failed: false,
+        stopped: false,
     };
     search.grow(options, (most, wanted), &refused, watch)?;
-    while search.undo_harm() {
+    while !search.stopped && search.undo_harm() {
         search.left = missing(search.last(), options, &search.passed(&refused));
         search.grow(options, (most, wanted), &refused, watch)?;
     }
@@ -219,13 +224,18 @@ impl Search {
         refused: &[&'static str],
         watch: &Watch,
     ) -> Result<(), FitError> {
-        while self.added.len() < most && !watch.is_stopped() {
+        while self.added.len() < most {
+            if watch.is_stopped() {
+                self.stopped = true;
+                return Ok(());
+            }
             (watch.progress)((self.added.len() + 1) as f64 / (most + 1) as f64);
             let outdone = wanted == Wanted::All && self.is_outdone(options);
             if let Some((finding, suspect)) = self.left.effect.clone().filter(|_| !outdone) {
                 let exam = self.last().of_grown(growth::grown(self.last(), &suspect)?)?;
-                let grown = match self.borne_out(exam, suspect.best)? {
+                let grown = match self.borne_out(exam, suspect.best, watch)? {
                     Growth::Stands(grown) => grown,
+                    Growth::Stopped => continue,
                     failed => {
                         let gone =
                             if matches!(failed, Growth::Idle) { &mut self.removed } else { &mut self.inseparable };
@@ -240,8 +250,11 @@ impl Search {
                     continue;
                 }
             }
-            let next = if wanted == Wanted::All { self.law(options)? } else { None };
+            let next = if wanted == Wanted::All { self.law(options, watch)? } else { None };
             let Some((grown, added)) = next else {
+                if watch.is_stopped() {
+                    continue;
+                }
                 if outdone {
                     self.law_failed = true;
                     continue;
@@ -255,7 +268,7 @@ impl Search {
     }
 
     /// A model grown by an effect, less those that no longer help beside it, and which they are.
-    fn borne_out(&self, mut exam: Examination, effect: &'static str) -> Result<Growth, FitError> {
+    fn borne_out(&self, mut exam: Examination, effect: &'static str, watch: &Watch) -> Result<Growth, FitError> {
         if astray(&exam, self.last()) || idle(&exam, |asked| asked == effect).is_some() {
             return Ok(Growth::Idle);
         }
@@ -266,6 +279,9 @@ impl Search {
         let (mut kept, mut removed) = (vec![effect], Vec::new());
         while let Some(effect) = idle(&exam, |effect| !stands(effect) && !kept.contains(&effect)) {
             let fewer = Examination::new(without(&exam.fitted, effect)?)?;
+            if watch.is_stopped() {
+                return Ok(Growth::Stopped);
+            }
             // One linear step shows that it no longer helps; the full fit must confirm it.
             let is_silent = silent(&exam.fitted, |asked| asked == effect).is_some();
             if !is_silent && exam.left_out(&[]).gain(&fewer.left_out(&[])) >= LEAST_GAIN {
@@ -283,6 +299,9 @@ impl Search {
             exam = Examination::new(without(&exam.fitted, incredible)?)?;
             written = trusted(exam.fitted.clone())?;
             removed.push(incredible);
+            if watch.is_stopped() {
+                return Ok(Growth::Stopped);
+            }
         }
         let mut inseparable = Vec::new();
         while let Some((dear, fewer)) = too_dear(&exam, &written, |effect| !stands(effect))? {
@@ -292,13 +311,19 @@ impl Search {
             exam = Examination::new(without(&exam.fitted, dear)?)?;
             written = fewer;
             inseparable.push(dear);
+            if watch.is_stopped() {
+                return Ok(Growth::Stopped);
+            }
         }
         Ok(Growth::Stands(Box::new(Grown { exam, written, removed, inseparable })))
     }
 
     /// The model grown by the law that what repeats follows, where it counts and a fit bears it out.
-    fn law(&mut self, options: &Options) -> Result<Option<(Grown, Added)>, FitError> {
+    fn law(&mut self, options: &Options, watch: &Watch) -> Result<Option<(Grown, Added)>, FitError> {
         while let Some(repeated) = self.repeats(options).cloned().filter(|repeated| repeated.counts(WORTH_A_LAW)) {
+            if watch.is_stopped() {
+                return Ok(None);
+            }
             let tried =
                 |law: &UnlistedLaw| law.model.as_ref().is_none_or(|model| self.refused_laws.contains(&text_of(model)));
             if self.added.iter().filter(|added| matches!(added.by, Found::Unlisted(_))).count() >= MOST_LAWS {
@@ -315,7 +340,7 @@ impl Search {
             let (fitted, name) = growth::grown_by_law(self.last(), &model)?;
             let exam = self.last().of_grown(fitted)?;
             let is_told = exam.widening(&exam.columns_of(name)) <= WIDE;
-            let growth = if is_told { self.borne_out(exam, name)? } else { Growth::Inseparable };
+            let growth = if is_told { self.borne_out(exam, name, watch)? } else { Growth::Inseparable };
             if let Growth::Stands(grown) = growth
                 && self.is_worth_a_law(&grown, name)
             {
@@ -351,9 +376,9 @@ impl Search {
         !law_failed && repeated.is_some_and(|repeated| drop < OUTDONE * repeated.law.drop)
     }
 
-    /// The strongest pattern that repeats in the residuals of the last model.
+    /// The strongest pattern that repeats in the residuals of the last model. A search that was stopped does not look for one any more.
     pub fn repeats(&mut self, options: &Options) -> Option<&Repeated> {
-        if self.repeats.is_none() {
+        if self.repeats.is_none() && !self.stopped {
             self.repeats = Some(repeats::beside(self.last(), options.seed));
         }
         self.repeats.as_ref().and_then(Option::as_ref)

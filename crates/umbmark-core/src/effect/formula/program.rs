@@ -6,8 +6,9 @@ use crate::geometry::{Displacement2, Real};
 use crate::parameter::Role;
 use std::ops::Range;
 
-/// Maximum depth of the stack.
+/// Maximum depth of the stack, and that of most formulas.
 pub(super) const DEPTH: usize = 16;
+const SHALLOW: usize = 4;
 /// Maximum number of operations of a formula.
 pub(super) const LONGEST: usize = 256;
 
@@ -115,12 +116,15 @@ pub(super) struct Program {
     ops: Vec<Op>,
     spans: Vec<Range<usize>>,
     waiting: usize,
+    /// The largest number of values that wait at the same time.
+    deepest: usize,
 }
 
 impl Program {
     /// Adds an operation; whether there was room for it.
     pub fn push(&mut self, op: Op, span: Range<usize>) -> bool {
         self.waiting = self.waiting + 1 - op.arity();
+        self.deepest = self.deepest.max(self.waiting);
         self.ops.push(op);
         self.spans.push(span);
         self.waiting <= DEPTH && self.ops.len() <= LONGEST
@@ -148,11 +152,27 @@ impl Program {
         parameters: &[T],
         at: &Context<T>,
         motion: &Displacement2<T>,
+        watch: impl FnMut(usize, T),
+    ) -> T {
+        // A stack of 16 numbers with derivatives is a kilobyte, and clearing it takes longer than most formulas.
+        if self.deepest <= SHALLOW {
+            self.on_stack::<SHALLOW, T>(parameters, at, motion, watch)
+        } else {
+            self.on_stack::<DEPTH, T>(parameters, at, motion, watch)
+        }
+    }
+
+    #[inline]
+    fn on_stack<const SIZE: usize, T: Real>(
+        &self,
+        parameters: &[T],
+        at: &Context<T>,
+        motion: &Displacement2<T>,
         mut watch: impl FnMut(usize, T),
     ) -> T {
         let mut middle = Middle::new(at, motion);
         // The topmost value is in `top`, those below it in `below`.
-        let mut below = [T::from(0.0); DEPTH];
+        let mut below = [T::from(0.0); SIZE];
         let (mut count, mut top) = (0, T::from(0.0));
         for (i, op) in self.ops.iter().enumerate() {
             match op.arity() {
