@@ -97,7 +97,8 @@ pub struct Context<T = f64> {
     pub session_distance: f64,
     /// Path length since the last turn \[m\], or since START before the first turn.
     pub since_turn: f64,
-    /// Path length since the robot drove off \[m\]: after a turn, after it stood still or changed between ahead and back, or from START.
+    /// Path length since the robot drove off \[m\]: after a turn on the spot, after it stood still or changed between ahead and back, or from
+    /// START.
     pub since_stop: f64,
     /// Path length of the piece \[m\]; negative if its counts are opposite to the direction of driving, as single counts can be.
     pub length: f64,
@@ -214,6 +215,9 @@ const LEAST_TURN: f64 = 0.35;
 const AWAY_FROM_TURN: f64 = 0.01;
 /// A wheel has reversed if it has rolled back by more than this \[m\] from its farthest point.
 const LEAST_REVERSAL: f64 = 0.5e-3;
+
+/// A turn is one on the spot where the axle's centre moves by less than this share of what the wheels roll against each other.
+const ON_THE_SPOT: f64 = 0.1;
 
 /// A robot has stopped where no wheel has rolled for so long \[s\].
 const STOOD: f64 = 0.2;
@@ -407,7 +411,9 @@ impl Progress {
         if self.turned.abs() > LEAST_TURN && self.gone == 0.0 {
             self.now.last_turn = self.turned.signum();
             self.now.since_turn = 0.0;
-            self.now.since_stop = 0.0;
+            if forward < ON_THE_SPOT * rotation.abs() * self.now.wheelbase {
+                self.now.since_stop = 0.0;
+            }
         }
     }
 }
@@ -481,6 +487,9 @@ mod tests {
         let quarter = 0.5 * 0.34 * std::f64::consts::FRAC_PI_2 / 10.0;
         let turned = drive(&[&[on; 3][..], &[(quarter, -quarter); 10], &[on; 2]].concat());
         assert!((turned[14].since_stop - 0.1).abs() < 1e-12);
+        // A tight bend that the robot rolls through is a turn, and no stop.
+        let bent = drive(&[&[on; 3][..], &[(0.005, 0.04); 20], &[on; 2]].concat());
+        assert!(bent[24].since_turn < 0.13 && bent[24].since_stop > 0.7);
     }
 
     #[test]

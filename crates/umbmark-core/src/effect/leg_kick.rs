@@ -37,9 +37,9 @@ impl Effect for LegKick {
                 ..TRAIL
             },
         ],
-        equation: "Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn, stop or START",
+        equation: "Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn on the spot, stop or START",
         physics: "One motor responds sooner than the other, one clutch engages later, or one caster is not aligned. The robot jerks to \
-                  the same side whenever it drives off: after a turn, and after a stop on the way.",
+                  the same side whenever it drives off: after a turn on the spot, and after a stop on the way.",
         signature: "The heading steps at the start of each of the four legs, with the same sign in ccw and cw. In return poses it looks \
                     like E_d, but it does not grow along the leg.",
         confused_with: &["wheel_diameter_ratio", "direction_dependent_wheelbase"],

@@ -148,7 +148,7 @@ pub(super) fn faded<T: Real>(since: f64, length: f64, trail: T) -> T {
 
 /// A change of heading over the first way after the robot drives off, one ahead and another back.
 ///
-/// `Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn, stop or START`
+/// `Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn on the spot, stop or START`
 pub struct LegKick;
 
 impl BodyLaw for LegKick {
