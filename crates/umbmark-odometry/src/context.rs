@@ -231,6 +231,8 @@ pub struct Progress {
     /// Rotation of the present turn \[rad\], and distance since the last rotation \[m\].
     turned: f64,
     gone: f64,
+    /// How far the axle's centre moved in the present turn, ahead and aside \[m\].
+    turn_way: [f64; 2],
     /// Rolling direction of each wheel, and its distance behind its farthest point \[m\].
     sense: [f64; 2],
     behind: [f64; 2],
@@ -302,6 +304,7 @@ impl Progress {
             least_reversal: [per_tick.left, per_tick.right].map(|tick| LEAST_REVERSAL.max(2.0 * tick)),
             turned: 0.0,
             gone: 0.0,
+            turn_way: [0.0; 2],
             sense: [0.0; 2],
             behind: [0.0; 2],
             way_sense: 0.0,
@@ -343,7 +346,7 @@ impl Progress {
         let wheels = [travel.left, travel.right];
         let forward = 0.5 * (travel.left + travel.right);
         let rotation = (travel.right - travel.left) / self.now.wheelbase;
-        self.follow_turn(forward.abs().max(aside.way.abs()), rotation);
+        self.follow_turn([forward, aside.way], rotation);
         let mean = [0, 1].map(|w| 0.5 * (from[w] + to[w]));
         let now = &mut self.now;
         now.duration = duration;
@@ -368,9 +371,13 @@ impl Progress {
             now.falls_behind = if moves { further } else { [[0.0; TIME_CONSTANTS.len()]; 2] };
         }
         self.stood = if wheels == [0.0; 2] && aside == Aside::NONE { self.stood + duration } else { 0.0 };
+        if self.stood >= STOOD {
+            (now.since_stop, self.way_sense) = (0.0, 0.0);
+        }
+        // Counts that tremble in a turn are no way back.
         let least = self.least_reversal[0].max(self.least_reversal[1]);
-        let turns_back = reversal(&mut self.way_sense, &mut self.way_behind, forward, least) != 0.0;
-        if self.stood >= STOOD || turns_back {
+        let rolls = rotation.abs() * now.wheelbase <= forward.abs();
+        if rolls && reversal(&mut self.way_sense, &mut self.way_behind, forward, least) != 0.0 {
             now.since_stop = 0.0;
         }
         now.believed_heading = now.heading;
@@ -398,21 +405,24 @@ impl Progress {
     }
 
     #[inline]
-    fn follow_turn(&mut self, forward: f64, rotation: f64) {
-        if rotation.abs() * self.now.wheelbase > forward.abs() {
+    fn follow_turn(&mut self, [forward, aside]: [f64; 2], rotation: f64) {
+        let way = forward.abs().max(aside.abs());
+        if rotation.abs() * self.now.wheelbase > way {
             self.turned += rotation;
+            self.turn_way = [self.turn_way[0] + forward, self.turn_way[1] + aside];
             self.gone = 0.0;
         } else {
-            self.gone += forward.abs();
+            self.gone += way;
             if self.gone > AWAY_FROM_TURN {
-                self.turned = 0.0;
+                (self.turned, self.turn_way) = (0.0, [0.0; 2]);
             }
         }
         if self.turned.abs() > LEAST_TURN && self.gone == 0.0 {
             self.now.last_turn = self.turned.signum();
             self.now.since_turn = 0.0;
-            if forward < ON_THE_SPOT * rotation.abs() * self.now.wheelbase {
-                self.now.since_stop = 0.0;
+            let moved = self.turn_way[0].abs().max(self.turn_way[1].abs());
+            if moved < ON_THE_SPOT * self.turned.abs() * self.now.wheelbase {
+                (self.now.since_stop, self.way_sense) = (0.0, 0.0);
             }
         }
     }

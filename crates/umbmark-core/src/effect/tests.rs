@@ -114,7 +114,14 @@ pub(super) fn recorded_log() -> TickLog {
     log
 }
 
-/// Tracks on which every deterministic effect of one axle shows: a small square and a circle, both ways, and a recorded drive.
+/// The same drive, every way of it back.
+pub(crate) fn recorded_back() -> TickLog {
+    let mut log = recorded_log();
+    log.left.iter_mut().chain(&mut log.right).for_each(|count| *count = -*count);
+    log
+}
+
+/// Tracks on which every deterministic effect of one axle shows: a small square and a circle, both ways, and a recorded drive, ahead and back.
 pub(super) fn probes() -> Vec<Track> {
     let robot = Robot::labmate();
     let square = Path::new(&SQUARE, &[0.5], SpeedProfile::default()).unwrap();
@@ -123,7 +130,7 @@ pub(super) fn probes() -> Vec<Track> {
         tracks.push(Track::watched(&square, direction, &robot));
         tracks.push(Track::watched(&circle(), direction, &robot));
     }
-    tracks.push(Track::from_log(&recorded_log(), &robot).unwrap());
+    tracks.extend([recorded_log(), recorded_back()].map(|log| Track::from_log(&log, &robot).unwrap()));
     tracks
 }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::drive::DriveKind;
-use crate::effect::tests::sideways_log;
+use crate::effect::tests::{recorded_back, sideways_log};
 use crate::effect::{CATALOGUE, Changes, Entry, Model, RunContext};
 use crate::parameter::{Parameter, Role};
 use crate::path::{CIRCLE, FIGURE_EIGHT, SQUARE, SpeedProfile};
@@ -113,8 +113,8 @@ fn replay_of_recorded_ticks_meets_the_measured_poses_as_near_as_ticks_tell_place
     }
 }
 
-/// Everything that is measured of some runs on a square and a circle, on the way and at their ends; of two trucks, at the end of
-/// a square.
+/// Everything that is measured of some runs on a square and a circle, on the way and at their ends, and of a drive back; of two trucks, at the
+/// end of a square.
 fn everything_measured(model: &Model) -> Vec<f64> {
     let mut all = Vec::new();
     if model.robot().drive.kind().moves_sideways() {
@@ -129,6 +129,9 @@ fn everything_measured(model: &Model) -> Vec<f64> {
         let error = simulator.run(&mut truth, Direction::Ccw, TestKind::Systematic);
         return vec![error.x, error.y, error.heading.unwrap()];
     }
+    // Paths lead ahead; logs lead back, too.
+    let back = Track::from_log(&recorded_back(), model.robot()).unwrap();
+    all.extend(back.poses(&model.chain()).iter().flat_map(|pose| [pose.x, pose.y, pose.heading]));
     for path in [path(&SQUARE, &[1.0]), path(&CIRCLE, &[1.0, 1.0])] {
         let (mut simulator, mut truth) =
             opened(model, &path, Odometry::Sampled { rate: 20.0, update: Update::Arc }, Phase::Edge);

@@ -154,6 +154,10 @@ pub struct LegKick;
 impl BodyLaw for LegKick {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        // Counts that tremble in a turn on the spot are no way.
+        if at.turn_rate.abs() * at.wheelbase > at.speed.abs() {
+            return;
+        }
         let kick = if at.speed < 0.0 { p[1] } else { p[0] };
         motion.rotation += kick * faded(at.since_stop, at.length, p[2]);
     }

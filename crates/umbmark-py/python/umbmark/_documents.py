@@ -2249,7 +2249,7 @@ class Learnt(Result, frozen=True):
     remarks : tuple[str, ...]
         Further remarks, a sentence each.
     partial : bool
-        Whether it was stopped while an effect was still missing.
+        Whether it was stopped before the search for missing effects ended.
     size : float
         False-alarm rate: probability that an effect is added to a complete model.
     draws : int
@@ -3257,7 +3257,7 @@ class Solution(Result, frozen=True):
         Findings about the data before any fit: faults, clock and mounting of the reference, jumps,
         wrong poses, outlying runs.
     partial : bool
-        Whether learning was stopped while an effect was still missing.
+        Whether learning was stopped before the search for missing effects ended.
     size : float
         Probability with which an effect is added to a complete model; intervals hold with the rest.
     draws : int

@@ -209,6 +209,8 @@ class EffectKeys(TypedDict, total=False):
     sine_m: Drawn
     per_m: Drawn
     per_session_m: Drawn
+    mean_per_m: Drawn
+    settles_per_m: Drawn
     s2_per_m: Drawn
     play_m: Drawn
     ratio: Drawn
@@ -222,6 +224,7 @@ class EffectKeys(TypedDict, total=False):
     s_per_rad: Drawn
     difference: Drawn
     kick_rad: Drawn
+    back_rad: Drawn
     drift_x: Drawn
     drift_y: Drawn
     slide_x_m_per_rad: Drawn
