@@ -462,7 +462,7 @@ fn contexts() -> [Context; 2] {
         clock_excess: 0.03,
         recorded: false,
     };
-    [turn, Context { last_turn: 0.0, wheel_speed: [0.2; 2], recorded: true, ..turn }]
+    [turn, Context { last_turn: 0.0, turn_rate: 0.1, wheel_speed: [0.2; 2], recorded: true, ..turn }]
 }
 
 #[test]
