@@ -49,7 +49,14 @@ def rendered(source: Path) -> Files:
             "connection_file": f"{folder}/kernel.json",
         }
         config = Config({"KernelManager": own})
-        NotebookClient(notebook, timeout=600, kernel_name="python3", config=config).execute()
+        client = NotebookClient(
+            notebook,
+            timeout=600,
+            kernel_name="python3",
+            coalesce_streams=True,
+            config=config,
+        )
+        client.execute()
     files: Files = {}
     names = (f"{source.stem}_{number}" for number in itertools.count(1))
     parts = [f"<!-- Made of notebooks/{source.name} by .ci/render_notebooks.py. -->"]
