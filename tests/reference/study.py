@@ -10,17 +10,18 @@ import json
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path as File
-from typing import Any
+from typing import Any, TypeVar
 
 from cases import CASES, DRAWN, RETURNS, UNLISTED
 from generate import main as generate
 from measure import NOISE_MODELS
 
+One = TypeVar("One")
 ROOT = File(__file__).parents[2]
 COMMANDS = [ROOT / "target" / build / "umbmark" for build in ("release", "debug")]
 ADDED = ("physics", "nuisance")
@@ -101,14 +102,25 @@ def learn(command: File, case: str, seed: int, noise: str = "gaussian") -> Answe
     )
 
 
+def each_of(
+    ask: Callable[[One], Answer], work: Sequence[One], threads: int
+) -> Iterator[Answer]:
+    """The answers in order, each as soon as it is there; how far it is on stderr."""
+    with ThreadPoolExecutor(threads) as pool:
+        for done, answer in enumerate(pool.map(ask, work), start=1):
+            print(f"\r{done} of {len(work)} ", end="", file=sys.stderr, flush=True)
+            yield answer
+    print(file=sys.stderr)
+
+
 def hidden(command: File, seeds: list[int], threads: int) -> Iterator[str]:
     """A line for each case and seed, and what they come to."""
     names = [name for name in CASES if name not in RETURNS]
     work = [(name, seed) for name in names for seed in seeds]
-    with ThreadPoolExecutor(threads) as pool:
-        answers = list(pool.map(lambda one: learn(command, *one), work))
     yield "| case | seed | added | verdict | left out [mm] | |\n|---|---|---|---|---|---|"
-    for answer in answers:
+    answers: list[Answer] = []
+    for answer in each_of(lambda one: learn(command, *one), work, threads):
+        answers.append(answer)
         classes = ", ".join(" or ".join(sorted(one)) for one in answer.classes) or "nothing"
         if answer.case in UNLISTED:
             judged = "unlisted" if answer.verdict == "unlisted_effect" else "not called unlisted"
@@ -139,10 +151,10 @@ def drawn(command: File, sets: int, threads: int) -> Iterator[str]:
     and what all come to by the number of causes.
     """
     seeds = range(FIRST_DRAWN, FIRST_DRAWN + sets)
-    with ThreadPoolExecutor(threads) as pool:
-        answers = list(pool.map(partial(learn, command, DRAWN), seeds))
     yield "| seed | hidden | added | verdict | left out [mm] |\n|---|---|---|---|---|"
-    for one in answers:
+    answers: list[Answer] = []
+    for one in each_of(partial(learn, command, DRAWN), seeds, threads):
+        answers.append(one)
         if not one.right:
             hidden = ", ".join(" or ".join(sorted(names)) for names in one.hidden)
             classes = ", ".join(" or ".join(sorted(names)) for names in one.classes) or "nothing"
@@ -162,18 +174,17 @@ def nulls(command: File, sets: int, threads: int) -> Iterator[str]:
     yield "| noise | sets | something added | called unlisted | an outlier named | said to repeat |"
     yield "|---|---|---|---|---|---|"
     added: list[tuple[str, Answer]] = []
-    with ThreadPoolExecutor(threads) as pool:
-        for index, noise in enumerate(NOISE_MODELS):
-            each = sets // len(NOISE_MODELS) + (index < sets % len(NOISE_MODELS))
-            seeds = range(FIRST_NULL, FIRST_NULL + each)
-            answers = list(pool.map(partial(learn, command, "none", noise=noise), seeds))
-            yield (
-                f"| {noise} | {each} | {sum(bool(one.classes) for one in answers)} "
-                f"| {sum(one.verdict == 'unlisted_effect' for one in answers)} "
-                f"| {sum(one.outliers > 0 for one in answers)} "
-                f"| {sum(one.repeats for one in answers)} |"
-            )
-            added.extend((noise, one) for one in answers if one.classes)
+    for index, noise in enumerate(NOISE_MODELS):
+        each = sets // len(NOISE_MODELS) + (index < sets % len(NOISE_MODELS))
+        seeds = range(FIRST_NULL, FIRST_NULL + each)
+        answers = list(each_of(partial(learn, command, "none", noise=noise), seeds, threads))
+        yield (
+            f"| {noise} | {each} | {sum(bool(one.classes) for one in answers)} "
+            f"| {sum(one.verdict == 'unlisted_effect' for one in answers)} "
+            f"| {sum(one.outliers > 0 for one in answers)} "
+            f"| {sum(one.repeats for one in answers)} |"
+        )
+        added.extend((noise, one) for one in answers if one.classes)
     if added:
         yield "\n| noise | seed | added | left out [mm] |\n|---|---|---|---|"
     for noise, one in added:

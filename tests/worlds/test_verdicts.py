@@ -143,6 +143,34 @@ def test_what_jumps_leave_is_not_called_chance(tmp_path: File) -> None:
     assert any(step.startswith("Find the cause of") for step in solved["next"]), solved["next"]
 
 
+def test_a_filter_and_an_early_reference_that_only_smooth_the_counts_are_not_added(
+    tmp_path: File,
+) -> None:
+    # Counts of 2 mm beside poses of 0.5 mm: a mean of the poses over 0.1 s would be nearer.
+    write(make("gaps", 9102, []), tmp_path)
+    words = [str(COMMAND), "learn", str(tmp_path), "--json"]
+    learnt = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
+    added = [step["added"] for step in learnt["steps"]]
+    assert added == [None, "wheel_diameter_ratio", "wheelbase", "scale"]
+    assert learnt["verdict"] == "explained"
+
+
+def test_turns_on_the_spot_show_the_wheelbase_beside_a_scale_that_is_kept(tmp_path: File) -> None:
+    # Counts of 1.4 mm make ways that the robot does not drive: E_s would be 0.2, and E_b with it.
+    write(make("spins", 9101, []), tmp_path)
+    truth = json.loads((tmp_path / "truth.json").read_text())
+    words = [str(COMMAND), "fit", str(tmp_path), "--json"]
+    told = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
+    assert told["not_shown"] == ["scale"]
+    e_b = next(one for one in told["fitted"] if one["parameter"] == "e_b")
+    off = e_b["value"] - truth["e_b"] / truth["e_s"]
+    assert abs(off) < 4 * e_b["standard_error"] < 1e-3
+    words[1] = "learn"
+    learnt = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
+    added = [step["added"] for step in learnt["steps"]]
+    assert added == [None, "wheel_diameter_ratio", "wheelbase"]
+
+
 def test_where_nothing_is_hidden_nothing_is_accused() -> None:
     said = found("null", 4)
     assert (said["verdict"], said["added_wrong"]) == ("explained", [])

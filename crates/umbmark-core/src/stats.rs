@@ -71,13 +71,16 @@ pub fn median(mut values: Vec<f64>) -> Option<f64> {
 
 /// The value that Student's t with `degrees_of_freedom` stays below with `probability`.
 ///
-/// NaN for a probability outside (0, 1) or degrees of freedom that are not positive.
+/// NaN for a probability outside (0, 1) or degrees of freedom that are not positive; with infinitely many it is the normal quantile.
 ///
 /// ```
 /// # use umbmark_core::stats::student_t_quantile;
 /// assert!((student_t_quantile(0.975, 8.0) - 2.306_004_135).abs() < 1e-8);
 /// ```
 pub fn student_t_quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
+    if degrees_of_freedom == f64::INFINITY {
+        return normal_quantile(probability);
+    }
     quantile(StudentsT::new(0.0, 1.0, degrees_of_freedom), probability)
 }
 
@@ -236,6 +239,7 @@ mod tests {
         {
             assert!((student_t_quantile(p, df) - t).abs() < 2e-5 * t.abs(), "{p} {df}: {}", student_t_quantile(p, df));
         }
+        assert_eq!(student_t_quantile(0.975, f64::INFINITY), normal_quantile(0.975));
         for (p, df, x) in [(0.025, 16.0, 6.907664), (0.975, 16.0, 28.845351), (0.5, 8.0, 7.344121)] {
             assert!((chi_squared_quantile(p, df) - x).abs() < 1e-5 * x, "{p} {df}: {}", chi_squared_quantile(p, df));
         }

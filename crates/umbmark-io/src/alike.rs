@@ -1,20 +1,28 @@
 //! Warnings that many files share, told once.
 
+use std::collections::HashMap;
+
 /// So many warnings that differ in their numbers only are told one by one.
 const FEW: usize = 3;
 
 /// Warnings, each of a file ("FILE: ..."): of more than [`FEW`] that differ in their files and numbers only, the first, and how many more
 /// there are.
 pub(super) fn told_once(warnings: Vec<String>) -> Vec<String> {
-    let kinds: Vec<Option<String>> = warnings.iter().map(|warning| kind(warning)).collect();
-    let alike = |place: usize| kinds.iter().filter(|kind| kind.is_some() && **kind == kinds[place]).count();
-    let is_first = |place: usize| !kinds[..place].contains(&kinds[place]);
-    let of = |(place, warning): (usize, String)| match alike(place) {
-        count if count <= FEW => Some(warning),
-        count if is_first(place) => Some(format!("{warning} (and {} more files alike)", count - 1)),
-        _ => None,
-    };
-    warnings.into_iter().enumerate().filter_map(of).collect()
+    let mut places_of: HashMap<String, Vec<usize>> = HashMap::new();
+    for (place, warning) in warnings.iter().enumerate() {
+        if let Some(kind) = kind(warning) {
+            places_of.entry(kind).or_default().push(place);
+        }
+    }
+    let mut told: Vec<Option<String>> = warnings.into_iter().map(Some).collect();
+    for places in places_of.values().filter(|places| places.len() > FEW) {
+        let first = told[places[0]].take();
+        for place in places {
+            told[*place] = None;
+        }
+        told[places[0]] = first.map(|warning| format!("{warning} (and {} more like it)", places.len() - 1));
+    }
+    told.into_iter().flatten().collect()
 }
 
 /// What a warning says of its file, without the numbers in it; `None` where it is of no file.
@@ -39,7 +47,7 @@ mod tests {
         many.splice(2..2, [other.clone()]);
         many.extend(vec![without_file.clone(); 5]);
         let told = told_once(many);
-        let first = "runs/1.csv: the track starts -1.5 m away (and 3 more files alike)".to_owned();
+        let first = "runs/1.csv: the track starts -1.5 m away (and 3 more like it)".to_owned();
         assert_eq!(told, [vec![first, other], vec![without_file; 5]].concat());
     }
 }

@@ -48,7 +48,7 @@ use super::options::Options;
 use super::suspect::Suspect;
 use crate::effect::{Entry, Model};
 use crate::evidence::FitError;
-use crate::evidence::tracks::fit;
+use crate::evidence::tracks::{fit, fit_possible};
 use crate::likelihood::Observed;
 use crate::watch::Watch;
 
@@ -71,8 +71,10 @@ const MAX_CLASSES: usize = 3;
 
 /// Fits a model's free parameters to tracks and tests every other effect and every smooth.
 pub(crate) fn diagnose(observed: &Observed, model: &Model, options: &Options) -> Result<Diagnosis, FitError> {
-    let fitted = fit(observed, model)?;
-    let mut search = Watch::nobody(|watch| search(fitted, options, (MAX_CLASSES, Wanted::Listed), Vec::new(), watch))?;
+    let fitted = fit_possible(observed, model)?;
+    let is_out = |effect: &&str| fitted.model.parts().iter().all(|part| part.effect.name() != *effect);
+    let refused: Vec<&str> = model.parts().iter().map(|part| part.effect.name()).filter(is_out).collect();
+    let mut search = Watch::nobody(|watch| search(fitted, options, (MAX_CLASSES, Wanted::Listed), refused, watch))?;
     let Conclusion { verdict, reasons, repeats, remains, dependence, experiments, hints } =
         Conclusion::new(&mut search, options)?;
     let Search { mut exams, added, left, .. } = search;

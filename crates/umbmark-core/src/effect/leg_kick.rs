@@ -37,7 +37,7 @@ impl Effect for LegKick {
                 ..TRAIL
             },
         ],
-        equation: "Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn on the spot, stop or START",
+        equation: "Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn on the spot, stop or START, made while b |ω| ≤ |v|",
         physics: "One motor responds sooner than the other, one clutch engages later, or one caster is not aligned. The robot jerks to \
                   the same side whenever it drives off: after a turn on the spot, and after a stop on the way.",
         signature: "The heading steps at the start of each of the four legs, with the same sign in ccw and cw. In return poses it looks \
@@ -48,16 +48,13 @@ impl Effect for LegKick {
     };
 
     fn means(p: &[f64], _robot: &Robot) -> String {
-        let back = match p[1] == 0.0 {
-            true => String::new(),
-            false => format!(" and, driving back, {} to the {}", deg(p[1]), side(p[1])),
+        let kick = |way: &str, kick: f64| (kick != 0.0).then(|| format!("{} to the {}{way}", deg(kick), side(kick)));
+        let kicks = match p[1] == 0.0 {
+            true => vec![kick("", p[0])],
+            false => vec![kick(" driving ahead", p[0]), kick(" driving back", p[1])],
         };
-        format!(
-            "Whenever it drives off the robot turns {} to the {}{back}, most of it within {}.",
-            deg(p[0]),
-            side(p[0]),
-            mm(p[2])
-        )
+        let kicks: Vec<String> = kicks.into_iter().flatten().collect();
+        format!("Whenever it drives off the robot turns {}, most of it within {}.", kicks.join(" and "), mm(p[2]))
     }
 
     fn varies(p: &[f64]) -> bool {
@@ -67,6 +64,9 @@ impl Effect for LegKick {
 
 #[cfg(test)]
 mod tests {
+    use super::LegKick;
+    use crate::drive::Robot;
+    use crate::effect::Effect;
     use crate::effect::tests::{ccw_and_cw, stops_with};
     use std::f64::consts::TAU;
 
@@ -79,5 +79,18 @@ mod tests {
                 assert!((stops[7].heading - sign * TAU - 4.0 * kick).abs() < 1e-12, "{:?}", stops[7]);
             }
         }
+    }
+
+    #[test]
+    fn it_says_only_the_kicks_that_are_there() {
+        let said = |ahead, back| LegKick::means(&[ahead, back, 0.05], &Robot::labmate());
+        let kick = 1f64.to_radians();
+        let whole = |kicks: &str| format!("Whenever it drives off the robot turns {kicks}, most of it within 50.0 mm.");
+        assert_eq!(said(kick, 0.0), whole("1.00 deg to the left"));
+        assert_eq!(said(0.0, -kick), whole("1.00 deg to the right driving back"));
+        assert_eq!(
+            said(kick, -kick),
+            whole("1.00 deg to the left driving ahead and 1.00 deg to the right driving back")
+        );
     }
 }

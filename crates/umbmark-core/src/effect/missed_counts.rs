@@ -6,6 +6,9 @@ use crate::drive::Robot;
 use crate::parameter::Parameter;
 use umbmark_odometry::law::MissedCounts;
 
+/// Of a wheel that misses counts, the other may seem to count this share of it twice.
+const OPPOSED: f64 = 0.3;
+
 pub(super) static EFFECT: Entry = Entry::of::<MissedCounts>().wheels::<MissedCounts>();
 
 impl Effect for MissedCounts {
@@ -59,6 +62,12 @@ impl Effect for MissedCounts {
         )
     }
 
+    /// Where one wheel misses about as much as the other counts twice, it is no counter that fails but a law of the yaw.
+    fn is_credible(p: &[f64]) -> bool {
+        let [less, more] = if p[0].abs() < p[1].abs() { [p[0], p[1]] } else { [p[1], p[0]] };
+        less * more >= 0.0 || less.abs() < OPPOSED * more.abs()
+    }
+
     fn varies(p: &[f64]) -> bool {
         p[0] != 0.0 || p[1] != 0.0
     }
@@ -66,6 +75,8 @@ impl Effect for MissedCounts {
 
 #[cfg(test)]
 mod tests {
+    use super::MissedCounts;
+    use crate::effect::Effect;
     use crate::effect::tests::{ccw_and_cw, circle_speeds, halfway_round_with, stops_with};
 
     #[test]
@@ -85,6 +96,14 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn a_wheel_that_counts_twice_what_the_other_misses_is_no_fault_of_counters() {
+        let credible = |left: f64, right: f64| MissedCounts::is_credible(&[left, right, 0.1]);
+        assert!(credible(0.01, 0.0) && credible(0.01, 0.02) && credible(-0.01, -0.02) && credible(0.01, -0.002));
+        assert!(!credible(0.01, -0.01) && !credible(-0.005, 0.004));
+    }
+
     #[test]
     fn on_a_circle_only_the_wheel_above_the_threshold_counts_short() {
         for (direction, _) in ccw_and_cw() {

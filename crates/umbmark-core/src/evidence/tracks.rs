@@ -3,6 +3,7 @@
 mod alone;
 mod errors;
 mod packed;
+mod possible;
 mod silent;
 mod system;
 
@@ -17,6 +18,7 @@ use std::sync::Arc;
 pub(crate) use alone::{Alone, trusted};
 pub(crate) use errors::{Errors, LEAST_GAIN, Misses};
 pub(crate) use packed::Packed;
+pub(crate) use possible::{fit_possible, is_possible};
 pub(crate) use silent::{last_part, silent, without, without_silent_taken};
 pub(crate) use system::{Projected, System, Unit};
 
@@ -47,13 +49,20 @@ impl Evidence for Observed {
     }
 
     fn fit(&self, model: &Model) -> Result<Fit, FitError> {
-        Ok(told(fit_alone(self, model)?.into_fitted()))
+        let mut fit = told(fit_alone(self, model)?.into_fitted());
+        // What these runs do not show keeps its values.
+        for part in model.parts() {
+            if fit.model.parts().iter().all(|own| own.effect.name() != part.effect.name()) {
+                fit.model.adopt(part);
+            }
+        }
+        Ok(fit)
     }
 }
 
-/// Fits the free parameters of a model as they are reported.
+/// Fits the free parameters of a model as they are reported; those of first effects that the motion denies are not fitted.
 pub(crate) fn fit_alone(observed: &Observed, model: &Model) -> Result<Alone, FitError> {
-    let (fitted, _) = without_silent_taken(fit(observed, model)?)?;
+    let (fitted, _) = without_silent_taken(fit_possible(observed, model)?)?;
     Ok(trusted(fitted)?)
 }
 

@@ -6,7 +6,7 @@ use crate::compare::tracks::against_as_written;
 use crate::diagnose::tracks::{self, Added, Conclusion, Found, Search, Wanted};
 use crate::diagnose::{Diagnosis, Options, Reason, Verdict};
 use crate::effect::{Model, Part, find};
-use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit, fit_alone, told};
+use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit, fit_alone, is_possible, told};
 use crate::evidence::{Estimate, Evidence, Fit, FitError};
 use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE, stands_for_the_reference};
 use crate::watch::{Reached, Watch};
@@ -15,8 +15,6 @@ use crate::watch::{Reached, Watch};
 const OPEN: f64 = 10.0;
 /// ... and its value is less than this many standard errors from zero effect.
 const SURE: f64 = 4.0;
-/// A fitted ratio is credible within this factor of the ratio that the motion alone gives.
-const FAR: f64 = 1.5;
 
 /// Learns which effects the robot of some tracks has, beside those of a `start`.
 pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch: &Watch) -> Result<Learnt, FitError> {
@@ -175,10 +173,7 @@ fn is_shown(fitted: &Fitted, effect: &str) -> bool {
     let Some((own, parameter)) = own.zip(parameter) else { return false };
     let nothing = parameter.default.resolve(fitted.model.robot());
     let off = (own.value - nothing).abs();
-    // Ratios far from those of the motion represent another error.
-    let expected = fitted.observed.ratio_by_motion(effect).unwrap_or(nothing);
-    let possible = nothing != 1.0 || (own.value / expected < FAR && expected / own.value < FAR);
-    possible && (own.standard_error < OPEN * parameter.typical || off > SURE * own.standard_error)
+    is_possible(fitted, effect) && (own.standard_error < OPEN * parameter.typical || off > SURE * own.standard_error)
 }
 
 /// The final diagnosis, of the learnt model.

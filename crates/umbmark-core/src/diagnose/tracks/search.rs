@@ -9,7 +9,7 @@ use super::needless::{idle, with_and_without};
 use super::repeats::{self, Repeated, UnlistedLaw};
 use crate::diagnose::options::Options;
 use crate::diagnose::suspect::Suspect;
-use crate::effect::{Law, Model};
+use crate::effect::{About, ActsOn, CATALOGUE, Law, Model};
 use crate::evidence::FitError;
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, silent, trusted, without, without_silent_taken};
 use crate::likelihood::Fitted;
@@ -31,9 +31,11 @@ const OUTSTANDING: f64 = 4.0;
 const GAIN_ENOUGH: f64 = 0.1;
 /// A law outside the catalogue is preferred to an effect that explains less than this share of what the law explains.
 const OUTDONE: f64 = 0.5;
-/// Wheels that follow late, and a reference that is late by a constant time; they cancel each other to this share of the lag where they only
-/// smooth the counts.
-const LAG: &str = "wheel_lag";
+/// How long a metre of the odometry is.
+const SCALE: &str = "scale";
+/// Wheels that follow late or a reference that is filtered, and a reference that is late by a constant time; they cancel each other to this
+/// share of the lag where they only smooth the counts.
+const LAGS: [&str; 2] = ["wheel_lag", "reference_filter"];
 const DELAY: &str = "reference_delay";
 const SMOOTH: f64 = 0.25;
 /// A fit with one more effect failed where its error exceeds this multiple of the error before.
@@ -114,15 +116,16 @@ pub(crate) struct Search {
     pub stopped: bool,
 }
 
-/// Adds what is certified as missing and `wanted`, at most `most` effects and none of those `refused`. Each is fitted without
-/// approximation before the next test. Once stopped, no more are added.
+/// Adds what is certified as missing and `wanted`, at most `most` effects and none of those `refused`, nor what bends
+/// a scale that is refused. Each is fitted without approximation before the next test. Once stopped, no more are added.
 pub(crate) fn search(
     fitted: Fitted,
     options: &Options,
     (most, wanted): (usize, Wanted),
-    refused: Vec<&'static str>,
+    mut refused: Vec<&'static str>,
     watch: &Watch,
 ) -> Result<Search, FitError> {
+    refused.extend(bent_scales(&refused));
     // Effects that were taken from the motion must help, as every effect added here; those of the user's model stay.
     let (fitted, removed) = without_silent_taken(fitted)?;
     let exam = Examination::new(fitted)?;
@@ -150,6 +153,14 @@ pub(crate) fn search(
     Ok(search)
 }
 
+/// Effects of the reference that look like a scale, where that is refused: runs that do not show how long a metre is do not show either that
+/// it is longer near the edge of a picture.
+fn bent_scales(refused: &[&'static str]) -> Vec<&'static str> {
+    let is_one = |about: &About| about.acts_on == ActsOn::Reference && about.confused_with.contains(&SCALE);
+    let all = CATALOGUE.iter().map(|entry| &entry.about).filter(|about| refused.contains(&SCALE) && is_one(about));
+    all.map(|about| about.name).collect()
+}
+
 /// Whether a fit ended far from the one before it: with an effect more, no model need miss by more.
 fn astray(exam: &Examination, before: &Examination) -> bool {
     let [now, then] = [exam, before].map(|exam| exam.errors.in_sample().position);
@@ -160,14 +171,18 @@ fn astray(exam: &Examination, before: &Examination) -> bool {
 fn incredible(fits: [&Fitted; 2], asked: impl Fn(&str) -> bool) -> Result<Option<&'static str>, FitError> {
     let mut parts = fits.into_iter().flat_map(|fitted| fitted.model.parts());
     let found = parts.find(|part| asked(part.effect.name()) && !part.is_credible()).map(|part| part.effect.name());
-    let smooths = found.is_none() && asked(LAG) && only_smooths(fits[0])?;
-    Ok(if smooths { Some(LAG) } else { found })
+    for lag in LAGS {
+        if found.is_none() && asked(lag) && only_smooths(fits[0], lag)? {
+            return Ok(Some(lag));
+        }
+    }
+    Ok(found)
 }
 
-/// Whether wheels are said to follow late, and the reference to be early by as much: together they only smooth the counts, and with them
-/// what whole counts hide.
-fn only_smooths(fitted: &Fitted) -> Result<bool, FitError> {
-    let late = |model: &Model| Some(model.get(LAG, "share")? * model.get(LAG, "time_constant_s")?);
+/// Whether wheels or poses are said to follow late, and the reference to be early by as much: together they only smooth the counts, and with
+/// them what whole counts hide.
+fn only_smooths(fitted: &Fitted, lag: &str) -> Result<bool, FitError> {
+    let late = |model: &Model| Some(model.get(lag, "share")? * model.get(lag, "time_constant_s")?);
     if late(&fitted.model).is_none() {
         return Ok(false);
     }
@@ -490,4 +505,15 @@ impl Search {
 fn text_of(law: &Model) -> String {
     let formula = law.parts().first().and_then(|part| part.effect.formula());
     formula.map_or_else(String::new, |formula| formula.text().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_that_do_not_show_how_long_a_metre_is_show_no_picture_that_is_bent_or_stretched() {
+        assert_eq!(bent_scales(&["scale"]), ["reference_lens", "reference_stretch"]);
+        assert!(bent_scales(&["wheel_diameter_ratio", "wheelbase"]).is_empty());
+    }
 }
