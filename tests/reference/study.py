@@ -102,9 +102,7 @@ def learn(command: File, case: str, seed: int, noise: str = "gaussian") -> Answe
     )
 
 
-def each_of(
-    ask: Callable[[One], Answer], work: Sequence[One], threads: int
-) -> Iterator[Answer]:
+def each_of(ask: Callable[[One], Answer], work: Sequence[One], threads: int) -> Iterator[Answer]:
     """The answers in order, each as soon as it is there; how far it is on stderr."""
     with ThreadPoolExecutor(threads) as pool:
         for done, answer in enumerate(pool.map(ask, work), start=1):
