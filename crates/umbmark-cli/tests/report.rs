@@ -185,7 +185,9 @@ fn a_page_of_two_datasets_says_whether_the_robot_returns_better() {
     };
     assert_eq!(change(["before", "after"]), "better");
     // What the returns say does not need the logs again.
-    ["before", "after", "again"].map(|name| std::fs::remove_dir_all(folder.path().join(name).join("runs")).unwrap());
+    for name in ["before", "after", "again"] {
+        std::fs::remove_dir_all(folder.path().join(name).join("runs")).unwrap();
+    }
     assert_eq!(change(["after", "before"]), "worse");
     assert_eq!(change(["before", "again"]), "the same");
 }
