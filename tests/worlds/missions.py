@@ -1,13 +1,15 @@
 """Missions with stops, dockings and arcs of a robot whose one wheel warms up, or that is kicked.
 
 `missions.py --sets 40 --binary PATH` prints, kind by kind, how often what is hidden is named, and
-how far the numbers of the robot are off.
+how far the numbers of the robot are off. `missions.py warms --shape linear` hides growth of another
+shape than the effect has.
 """
 
 import argparse
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from math import exp, pi
 from pathlib import Path as File
 from tempfile import TemporaryDirectory
@@ -24,6 +26,23 @@ KINDS = ("nothing", "warms", "kicked")
 """Nothing; one wheel grows by a share that settles with the way; each drive-off ahead kicks."""
 NAMES = {"warms": "diameter_drift", "kicked": "leg_kick"}
 """The effect that is meant."""
+GROWTHS: dict[str, Callable[[Array, Array, float], Array]] = {
+    "usual": lambda way, _, settles: 1 - np.exp(-way / settles),
+    "rational": lambda way, _, settles: way / (way + settles),
+    "linear": lambda way, _, settles: np.minimum(way / (1.5 * settles), 1),
+    "sigmoid": lambda way, _, settles: 1 / (1 + np.exp((settles - way) / (0.2 * settles))),
+    "by_time": lambda _, time, settles: 1 - np.exp(-0.3 * time / settles),
+}
+"""Share of the growth by the way [m] and the time [s] since the run began, and a length [m]."""
+KICKS: dict[str, Callable[[float, float], float]] = {
+    "usual": lambda way, _: 1 - exp(-way / 0.05),
+    "fixed": lambda way, _: min(way / 0.04, 1),
+    "late": lambda way, _: min(max(way / 0.04 - 1, 0), 1),
+    "undone": lambda way, _: 1 - exp(-way / 0.05) - 0.4 * (1 - exp(-way / 0.2)),
+    "by_time": lambda _, time: 1 - exp(-time / 0.25),
+}
+"""Share of a kick that is made by the way [m] and the time [s] since the robot stood."""
+SHAPES = {"nothing": ["usual"], "warms": list(GROWTHS), "kicked": list(KICKS)}
 STEP_S = 0.01
 ROW = 2
 POSE = 10
@@ -34,6 +53,7 @@ class World(NamedTuple):
     """A robot as it is entered and as it is, and what is hidden."""
 
     kind: str
+    shape: str
     wheelbase_m: float
     diameter_m: float
     ticks: int
@@ -49,10 +69,11 @@ class World(NamedTuple):
     runs: int
 
 
-def drawn(kind: str, random: Random) -> World:
+def drawn(kind: str, random: Random, shape: str = "usual") -> World:
     """A robot and its trouble."""
     return World(
         kind,
+        shape,
         random.uniform(0.25, 0.6),
         random.uniform(0.08, 0.25),
         int(random.choice([1440, 4096, 20000])),
@@ -105,10 +126,15 @@ def run(world: World, random: Random) -> tuple[Array, Array]:
     told = told * STEP_S
     way = np.concatenate([[0.0], np.cumsum(np.abs(speed) * STEP_S)])[:-1]
     rolled = told * np.array([[left], [right]])
-    rolled[world.wheel] *= 1 + world.share * (1 - np.exp(-way / world.settles_m))
+    if world.share:
+        grown = GROWTHS[world.shape](
+            way, STEP_S * np.arange(len(way), dtype=np.float64), world.settles_m
+        )
+        rolled[world.wheel] *= 1 + world.share * grown
     rolled = rolled + world.noise * np.sqrt(np.abs(told)) * random.standard_normal(told.shape)
     turn = (rolled[1] - rolled[0]) / (world.e_b * world.wheelbase_m)
-    turn = turn + world.kick_rad * kicks(speed)
+    if world.kick_rad:
+        turn = turn + world.kick_rad * kicks(speed, KICKS[world.shape])
     heading = np.concatenate([[0.0], np.cumsum(turn)])
     middle, forward = heading[:-1] + turn / 2, rolled.mean(axis=0)
     x = np.concatenate([[0.0], np.cumsum(forward * np.cos(middle))])
@@ -117,16 +143,18 @@ def run(world: World, random: Random) -> tuple[Array, Array]:
     return np.floor(angle / (pi * world.diameter_m) * world.ticks), np.stack([x, y, heading])
 
 
-def kicks(speed: Array) -> Array:
-    """Share of a kick that is made in each step: 5 cm after each drive-off from rest, ahead."""
+def kicks(speed: Array, by: Callable[[float, float], float] = KICKS["usual"]) -> Array:
+    """Share of a kick that is made in each step after each drive-off from rest, ahead."""
     made = np.zeros_like(speed)
-    since = 1.0
+    way, time = 1.0, 10.0
     for k, v in enumerate(speed.tolist()):
         if v == 0.0:
-            since = 0.0
-        elif v > 0.0:
-            made[k] = exp(-since / 0.05) - exp(-(since + v * STEP_S) / 0.05)
-        since += abs(v) * STEP_S
+            way, time = 0.0, 0.0
+            continue
+        after = (way + abs(v) * STEP_S, time + STEP_S)
+        if v > 0.0:
+            made[k] = by(*after) - by(way, time)
+        way, time = after
     return made
 
 
@@ -148,10 +176,10 @@ def write(world: World, folder: File, random: Random) -> None:
         (folder / f"runs/run_{number + 1:02}.csv").write_text("\n".join(lines) + "\n")
 
 
-def said(kind: str, seed: int, binary: File) -> tuple[World, dict[str, Any]]:
+def said(kind: str, seed: int, binary: File, shape: str = "usual") -> tuple[World, dict[str, Any]]:
     """A world, and what `learn` says of it."""
     random = stream(seed, kind, "missions")
-    world = drawn(kind, random)
+    world = drawn(kind, random, shape)
     with TemporaryDirectory() as place:
         folder = File(place) / "data"
         write(world, folder, random)
@@ -184,14 +212,16 @@ def main(words: list[str]) -> None:
     """Do what the command line says."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("kinds", nargs="*", default=KINDS)
+    parser.add_argument("--shape", choices=sorted({*GROWTHS, *KICKS}), default="usual")
     parser.add_argument("--sets", type=int, default=20)
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--binary", type=File, default=ROOT / "target/release/umbmark")
     chosen = parser.parse_args(words)
-    for kind in chosen.kinds:
+    kinds = [kind for kind in chosen.kinds if chosen.shape in SHAPES[kind]]
+    for kind in kinds:
         right, explained, off = 0, 0, []
         for seed in range(chosen.first_seed, chosen.first_seed + chosen.sets):
-            one = judged(*said(kind, seed, chosen.binary))
+            one = judged(*said(kind, seed, chosen.binary, chosen.shape))
             right, explained = right + one["right"], explained + (one["verdict"] == "explained")
             off += [abs(value) for value in one["off"].values()]
             told = ", ".join(f"{key} {value:+.1f}" for key, value in one["off"].items())

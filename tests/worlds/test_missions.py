@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from missions import NAMES, commands, drawn, judged, kicks, run, said
+from missions import KICKS, NAMES, commands, drawn, judged, kicks, run, said
 from record import stream
 from test_gyro import COMMAND, needs_command
 
@@ -12,6 +12,9 @@ def test_a_kick_is_made_after_each_drive_off_and_a_wheel_grows_to_its_share() ->
     speed, _ = commands(random).T
     offs = np.count_nonzero((speed[1:] > 0) & (speed[:-1] == 0))
     assert kicks(speed).sum() == pytest.approx(offs, rel=0.02)
+    for shape in ("fixed", "late", "by_time"):
+        assert kicks(speed, KICKS[shape]).sum() == pytest.approx(offs, rel=0.02)
+    assert kicks(speed, KICKS["undone"]).sum() == pytest.approx(0.6 * offs, rel=0.05)
     plain = drawn("nothing", random)._replace(noise=0.0)
     warm = plain._replace(share=0.01, settles_m=1.0, wheel=1)
     ways = [run(world, stream(2, "warms", "test"))[1] for world in (plain, warm)]
