@@ -9,7 +9,7 @@ use super::needless::{idle, with_and_without};
 use super::repeats::{self, Repeated, UnlistedLaw};
 use crate::diagnose::options::Options;
 use crate::diagnose::suspect::Suspect;
-use crate::effect::{About, ActsOn, CATALOGUE, Law, Model, Part};
+use crate::effect::{About, ActsOn, CATALOGUE, Law, Model};
 use crate::evidence::FitError;
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, silent, trusted, without, without_silent_taken};
 use crate::likelihood::Fitted;
@@ -291,7 +291,6 @@ impl Search {
         let taken: Vec<&str> = first.taken.iter().map(|taken| taken.effect).collect();
         let own: Vec<&str> = first.model.parts().iter().map(|part| part.effect.name()).collect();
         let stands = |effect: &str| own.contains(&effect) && !taken.contains(&effect);
-        let is_delay = |part: &Part| part.effect.name() == DELAY;
         let (mut kept, mut removed) = (vec![effect], Vec::new());
         while let Some(effect) = idle(&exam, |effect| !stands(effect) && !kept.contains(&effect)) {
             let fewer = Examination::new(without(&exam.fitted, effect)?)?;
@@ -309,18 +308,12 @@ impl Search {
         }
         let mut written = trusted(exam.fitted.clone())?;
         while let Some(incredible) = incredible([&exam.fitted, written.fitted()], |effect| !stands(effect))? {
-            // A delay that was there before may hold a part of the lag, and more than all then seems to follow late.
-            let is_held = LAGS.contains(&effect) && !stands(DELAY) && exam.fitted.model.parts().iter().any(is_delay);
-            let out = if incredible == effect && is_held { DELAY } else { incredible };
-            if out == effect {
+            if incredible == effect {
                 return Ok(Growth::Idle);
             }
-            exam = Examination::new(without(&exam.fitted, out)?)?;
-            if idle(&exam, |asked| asked == effect).is_some() {
-                return Ok(Growth::Idle);
-            }
+            exam = Examination::new(without(&exam.fitted, incredible)?)?;
             written = trusted(exam.fitted.clone())?;
-            removed.push(out);
+            removed.push(incredible);
             if watch.is_stopped() {
                 return Ok(Growth::Stopped);
             }
