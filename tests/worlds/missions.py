@@ -217,7 +217,12 @@ def main(words: list[str]) -> None:
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--binary", type=File, default=ROOT / "target/release/umbmark")
     chosen = parser.parse_args(words)
+    unknown = [kind for kind in chosen.kinds if kind not in SHAPES]
+    if unknown:
+        parser.error(f"no kind is called {unknown[0]}; there are {', '.join(KINDS)}")
     kinds = [kind for kind in chosen.kinds if chosen.shape in SHAPES[kind]]
+    if not kinds:
+        parser.error(f"none of {', '.join(chosen.kinds)} has the shape {chosen.shape}")
     for kind in kinds:
         right, explained, off = 0, 0, []
         for seed in range(chosen.first_seed, chosen.first_seed + chosen.sets):

@@ -146,7 +146,7 @@ def test_what_jumps_leave_is_not_called_chance(tmp_path: File) -> None:
 def test_a_filter_and_an_early_reference_that_only_smooth_the_counts_are_not_added(
     tmp_path: File,
 ) -> None:
-    # Counts of 2 mm beside poses of 0.5 mm: a mean of the poses over 0.1 s would be nearer.
+    # Counts of 3.5 mm beside poses of 0.5 mm: a mean of the poses over 0.1 s would be nearer.
     write(make("gaps", 9102, []), tmp_path)
     words = [str(COMMAND), "learn", str(tmp_path), "--json"]
     learnt = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
