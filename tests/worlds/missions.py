@@ -43,6 +43,7 @@ KICKS: dict[str, Callable[[float, float], float]] = {
 }
 """Share of a kick that is made by the way [m] and the time [s] since the robot stood."""
 SHAPES = {"nothing": ["usual"], "warms": list(GROWTHS), "kicked": list(KICKS)}
+RUNS = 8
 STEP_S = 0.01
 ROW = 2
 POSE = 10
@@ -85,7 +86,7 @@ def drawn(kind: str, random: Random, shape: str = "usual") -> World:
         random.uniform(10, 40),
         log_uniform(random, 0.004, 0.012) if kind == "kicked" else 0.0,
         log_uniform(random, 1e-4, 4e-4),
-        8,
+        RUNS,
     )
 
 
@@ -176,10 +177,12 @@ def write(world: World, folder: File, random: Random) -> None:
         (folder / f"runs/run_{number + 1:02}.csv").write_text("\n".join(lines) + "\n")
 
 
-def said(kind: str, seed: int, binary: File, shape: str = "usual") -> tuple[World, dict[str, Any]]:
-    """A world, and what `learn` says of it."""
+def said(
+    kind: str, seed: int, binary: File, shape: str = "usual", runs: int = RUNS
+) -> tuple[World, dict[str, Any]]:
+    """A world of so many runs, and what `learn` says of it."""
     random = stream(seed, kind, "missions")
-    world = drawn(kind, random, shape)
+    world = drawn(kind, random, shape)._replace(runs=runs)
     with TemporaryDirectory() as place:
         folder = File(place) / "data"
         write(world, folder, random)

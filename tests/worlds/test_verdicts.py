@@ -3,13 +3,15 @@
 import json
 import subprocess
 from pathlib import Path as File
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
 from files import write
-from judge import judged
+from judge import broken, judged
 from make import make
-from study import ROOT, Task, study
+from replay import left, read_truth, rms_m
+from study import ROOT, Task, ask, shortened, study
 
 COMMAND = ROOT / "target/debug/umbmark"
 SMALL = ("runs=4", "run_s=30", "reference_rate_hz=20", "layout=same", "kind=random_commands")
@@ -19,11 +21,22 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def found(world: str, seed: int, *overrides: str) -> dict[str, Any]:
-    """What the command says of a small world, held against the truth."""
-    task = Task(world, seed, SMALL + overrides, File(COMMAND), None, 300.0)
-    row = study(task)
-    return judged(row["answers"], row["truth"], row["truth_leaves_m"])
+def task(world: str, seed: int, *overrides: str) -> Task:
+    """A small world."""
+    return Task(world, seed, SMALL + overrides, File(COMMAND), None, 300.0)
+
+
+def found(world: str, seed: int, *overrides: str, inspected: bool = False) -> dict[str, Any]:
+    """What `learn` says of a small world, and `inspect` where asked, held against the truth."""
+    asked = task(world, seed, *overrides)
+    with TemporaryDirectory() as place:
+        # The command must not read the answer in the name of the folder.
+        folder = File(place) / "data"
+        write(make(world, seed, list(asked.overrides)), folder)
+        verbs = ("inspect", "learn") if inspected else ("learn",)
+        answers = {verb: shortened(verb, ask(asked, verb, str(folder))) for verb in verbs}
+        assert not broken(answers), broken(answers)
+        return judged(answers, read_truth(folder), rms_m(left(folder)))
 
 
 @pytest.mark.parametrize(
@@ -31,7 +44,7 @@ def found(world: str, seed: int, *overrides: str) -> dict[str, Any]:
     ["exchanged", "left_reversed", "right_reversed", "heading_clockwise", "mirrored", "mm_as_m"],
 )
 def test_a_fault_of_columns_or_frames_is_named_and_nothing_is_called_explained(world: str) -> None:
-    said = found(world, 1)
+    said = found(world, 1, inspected=True)
     assert said["faults"]
     assert all(said["faults"].values()), said["faults"]
     assert all(said["faults_inspected"].values()), said["faults_inspected"]
@@ -172,6 +185,7 @@ def test_turns_on_the_spot_show_the_wheelbase_beside_a_scale_that_is_kept(tmp_pa
 
 
 def test_where_nothing_is_hidden_nothing_is_accused() -> None:
-    said = found("null", 4)
+    row = study(task("null", 4))
+    said = judged(row["answers"], row["truth"], row["truth_leaves_m"])
     assert (said["verdict"], said["added_wrong"]) == ("explained", [])
     assert said["problems"] == []
