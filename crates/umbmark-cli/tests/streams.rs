@@ -129,13 +129,17 @@ fn what_comes_through_a_pipe_is_read_like_a_file() {
     assert!(!text(&told.stderr).contains("umbmark-"), "{told:?}");
 }
 
-/// The hidden robot with another number of ticks per revolution in its robot.toml.
+/// The hidden robot with another number of ticks per revolution in its robot.toml. Three runs each way: of all five the verbs say the same.
 fn with_ticks(ticks: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("runs")).unwrap();
     let from = examples("hidden");
     for entry in std::fs::read_dir(from.join("runs")).unwrap() {
         let entry = entry.unwrap();
+        let is_left_out = |end: &&str| entry.file_name().to_str().unwrap().ends_with(end);
+        if ["04.csv", "05.csv"].iter().any(is_left_out) {
+            continue;
+        }
         std::fs::copy(entry.path(), folder.path().join("runs").join(entry.file_name())).unwrap();
     }
     let robot = std::fs::read_to_string(from.join("robot.toml")).unwrap();

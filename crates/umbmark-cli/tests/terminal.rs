@@ -78,7 +78,7 @@ const COMMANDS: &[&str] = &[
     "diagnose slope --verbose",
     "diagnose long --verbose",
     "plan",
-    "plan tape",
+    "plan tape --draws 99",
     "plan --separate wheelbase turn_slip",
     "fit tape --add wheelbase -o fitted.toml",
     "learn slope -o learnt.toml",
