@@ -111,8 +111,8 @@ mod tests {
     use crate::likelihood::watched::watched;
     use crate::random::Stream;
 
-    /// What is told of five runs of a complete model whose headings were changed, by the number of the run.
-    fn told(seed: u64, mut change: impl FnMut(usize, &mut f64)) -> Option<Reason> {
+    /// Five runs of a complete model, and this model.
+    fn complete(seed: u64) -> (Dataset, Model) {
         let mut model = Model::new(&Robot::labmate());
         for (effect, parameter, value) in [
             ("wheel_noise", "k_sqrt_m", 5e-4),
@@ -121,37 +121,43 @@ mod tests {
         ] {
             model.set(effect, parameter, value).unwrap();
         }
-        let mut data: Dataset = watched(&model, 5, seed);
+        (watched(&model, 5, seed), model)
+    }
+
+    /// What is told of them with headings that were changed, by the number of the run.
+    fn told((data, model): &(Dataset, Model), mut change: impl FnMut(usize, &mut f64)) -> Option<Reason> {
+        let mut data = data.clone();
         for (k, run) in data.runs.iter_mut().enumerate() {
             let poses = run.log.iter_mut().flat_map(|log| &mut log.reference);
             poses.flat_map(|pose| &mut pose.heading).for_each(|heading| change(k, heading));
         }
-        let observed = Observed::new(&data, &Robot::labmate()).unwrap().along(&model);
-        of_headings(&observed, &model)
+        let observed = Observed::new(&data, &Robot::labmate()).unwrap().along(model);
+        of_headings(&observed, model)
     }
 
     /// A random walk of 3 mrad from pose to pose, an offset in one run of three, and a marker that turned in the middle of the first run.
     #[test]
     fn headings_that_are_not_those_of_the_way_are_told_and_noise_of_all_kinds_is_not() {
         for seed in 0..8 {
-            assert_eq!(told(seed, |_, _| ()), None);
+            let complete = complete(seed);
+            assert_eq!(told(&complete, |_, _| ()), None);
             // What all runs have in common is the yaw of the marker.
-            assert_eq!(told(seed, |_, heading| *heading += 0.3), None);
+            assert_eq!(told(&complete, |_, heading| *heading += 0.3), None);
         }
         let size = |reason: Option<Reason>| match reason {
             Some(Reason::HeadingsWander { deviation }) => deviation,
             other => panic!("{other:?}"),
         };
         let (mut stream, mut walk, mut last) = (Stream::new(3, 0, 0), 0.0, 0);
-        let walked = size(told(20, |run, heading| {
+        let walked = size(told(&complete(20), |run, heading| {
             (walk, last) = (if run == last { walk } else { 0.0 } + 3e-3 * stream.normal(), run);
             *heading += walk;
         }));
         assert!((0.01..0.1).contains(&walked), "{walked}");
-        let offset = size(told(21, |run, heading| *heading += if run % 3 == 0 { 0.05 } else { 0.0 }));
+        let offset = size(told(&complete(21), |run, heading| *heading += if run % 3 == 0 { 0.05 } else { 0.0 }));
         assert!((0.02..0.04).contains(&offset), "{offset}");
         let mut seen = 0;
-        let turned = size(told(22, |run, heading| {
+        let turned = size(told(&complete(22), |run, heading| {
             seen += usize::from(run == 0);
             *heading += if run == 0 && seen > 150 { 0.1 } else { 0.0 };
         }));
