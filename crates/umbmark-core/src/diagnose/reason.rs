@@ -105,6 +105,17 @@ pub enum Reason {
         /// What it depends on, in words.
         on: &'static str,
     },
+    /// An effect predicts held-out runs better and is significant by F, but runs so few or so different cannot certify it.
+    Unconfirmed {
+        /// The effect, first, and those that these runs cannot separate from it.
+        class: Vec<&'static str>,
+        /// p by F of it alone.
+        p: f64,
+        /// The greatest p of all tests, for all effects that were asked.
+        p_adjusted: f64,
+        /// Share by which the error of held-out positions or headings falls with it.
+        fall: f64,
+    },
     /// An effect of the reference leaves the scale open.
     UnknownScale {
         /// The effect, in words.
@@ -146,6 +157,11 @@ impl Reason {
             Reason::Data(suspicion) => suspicion.forbids_writing(),
             _ => false,
         }
+    }
+
+    /// Whether it lies in how the runs differ or in what they lack, whichever values are written.
+    pub(crate) fn is_of_runs(&self) -> bool {
+        matches!(self, Reason::OddRun(_) | Reason::RunsDiffer(_) | Reason::Unconfirmed { .. })
     }
 
     /// Whether the numbers of the model are wrong where it holds, beside what a missing effect makes of them: they must not be written.
@@ -218,6 +234,12 @@ impl Reason {
             Reason::Varies { share, motion, on } => format!(
                 "the {motion} error depends on {on}, by {:.2} % of the way: the fitted numbers are averages over this change, which their intervals leave out",
                 100.0 * share
+            ),
+            Reason::Unconfirmed { class, p, p_adjusted, fall } => format!(
+                "held-out runs are predicted {:.0} % better with {} (p = {p:.0e} by F), but these runs are too few or too different to certify \
+                 it (p = {p_adjusted:.2}): drive more runs",
+                100.0 * fall,
+                class.join(" or ")
             ),
             Reason::HeadingsWander { deviation } => format!(
                 "the measured headings wander by {:.1} deg against the way that was measured: they drift, are set anew in each run, or the marker \

@@ -38,6 +38,7 @@ mod search;
 mod significance;
 mod smooth;
 mod suggestion;
+mod unconfirmed;
 mod unequal;
 mod varying;
 mod wander;
@@ -78,7 +79,7 @@ pub(crate) fn diagnose(observed: &Observed, model: &Model, options: &Options) ->
     let Conclusion { verdict, reasons, repeats, remains, dependence, experiments, hints } =
         Conclusion::new(&mut search, options)?;
     let Search { mut exams, added, left, .. } = search;
-    let uncertified = uncertified(&left.asked, options);
+    let uncertified = uncertified(&left.asked, &reasons, options);
     let certified: Vec<Suspect> = added.into_iter().map(|added| added.suspect).collect();
     let asked = left.asked.into_iter().filter(|other| certified.iter().all(|known| known.best != other.best));
     let ranking = certified.iter().cloned().chain(asked).collect();

@@ -207,9 +207,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         let of_laws = |reason: &Reason| matches!(reason, Reason::Repeats(_));
         // What repeats with the likeliest values is in the data, whichever values are written; by how much is told in per cent.
         let examined = std::mem::replace(&mut reasons, doubts);
-        reasons.extend(
-            examined.iter().filter(|reason| matches!(reason, Reason::OddRun(_) | Reason::RunsDiffer(_))).cloned(),
-        );
+        reasons.extend(examined.iter().filter(|reason| reason.is_of_runs()).cloned());
         let examined = examined.into_iter().find(of_laws);
         if let Some(Reason::Repeats(mut repeated)) = examined.filter(|_| !reasons.iter().any(of_laws)) {
             repeated.law.left_out = [f64::NAN; 2];
@@ -230,7 +228,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         (None, false) => Verdict::Explained,
     };
     let diagnosis = tracks::of_model(last, dependence, options)?;
-    hints.extend(tracks::uncertified(&left.asked, options));
+    hints.extend(tracks::uncertified(&left.asked, &reasons, options));
     let mut remarks = [diagnosis.remarks.clone(), hints].concat();
     let ranking = left.asked;
     let asked = ranking.first().filter(|s| s.p_adjusted <= options.size && !told.contains(&s.best));

@@ -9,6 +9,7 @@ use super::repeats::Repeated;
 use super::responses::Question;
 use super::search::{Added, Found, Search};
 use super::smooth::{ALONG_THE_WAY, Motion};
+use super::unconfirmed::unconfirmed;
 use super::unequal::unequal;
 use super::{experiments, significance, varying};
 use crate::diagnose::diagnosis::{Diagnosis, GoodnessOfFit, Verdict};
@@ -61,6 +62,7 @@ impl Conclusion {
         reasons.extend(Reason::of_remains(&remains, last.fitted.observed.resolution()));
         reasons.extend(unequal(last).or_else(|| odd_run(last)));
         reasons.extend(varying::of_smooths(last, options));
+        reasons.extend(unconfirmed(search, options)?);
         let (mut experiments, mut hints) = (Vec::new(), Vec::new());
         for (exam, added) in search.exams.iter().zip(&search.added) {
             let (told, hint) = next_experiments(exam, added)?;
@@ -103,9 +105,11 @@ fn next_experiments(exam: &Examination, added: &Added) -> Result<(Vec<Experiment
     Ok((told, hints))
 }
 
-/// A remark on a suspect that is very significant by F but not by sign flips, because the runs are too few or too different.
-pub(crate) fn uncertified(asked: &[Suspect], options: &Options) -> Option<String> {
-    let loud = asked.first().filter(|s| s.p < LOUD && s.p_adjusted > options.size)?;
+/// A remark on a suspect that is very significant by F but not by sign flips, because the runs are too few or too different, unless a reason
+/// for doubt says so.
+pub(crate) fn uncertified(asked: &[Suspect], reasons: &[Reason], options: &Options) -> Option<String> {
+    let is_told = reasons.iter().any(|reason| matches!(reason, Reason::Unconfirmed { .. }));
+    let loud = asked.first().filter(|s| !is_told && s.p < LOUD && s.p_adjusted > options.size)?;
     Some(format!(
         "{} is significant by F (p = {:.0e}), but not under sign flips of whole runs (p = {:.2}): more runs are needed.",
         loud.class.join(" or "),

@@ -108,6 +108,8 @@ pub(crate) struct Search {
     pub left: Missing,
     /// The strongest repeating pattern beside the last model, once it was looked for.
     repeats: Option<Option<Repeated>>,
+    /// Effects that are not tested, from the beginning.
+    refused: Vec<&'static str>,
     /// Formulas that were tried and taken back.
     refused_laws: Vec<String>,
     /// Whether a law that explains more than the effect that would be added could not be.
@@ -141,14 +143,15 @@ pub(crate) fn search(
         inseparable: Vec::new(),
         left,
         repeats: None,
+        refused,
         refused_laws: Vec::new(),
         law_failed: false,
         stopped: false,
     };
-    search.grow(options, (most, wanted), &refused, watch)?;
+    search.grow(options, (most, wanted), watch)?;
     while !search.stopped && search.undo_harm() {
-        search.left = missing(search.last(), options, &search.passed(&refused));
-        search.grow(options, (most, wanted), &refused, watch)?;
+        search.left = missing(search.last(), options, &search.passed());
+        search.grow(options, (most, wanted), watch)?;
     }
     Ok(search)
 }
@@ -177,6 +180,15 @@ fn incredible(fits: [&Fitted; 2], asked: impl Fn(&str) -> bool) -> Result<Option
         }
     }
     Ok(found)
+}
+
+/// Whether a constant delay holds a part of a lag that is there: beside it more than all of the wheels or poses seem to follow late, or they
+/// seem to be early.
+fn is_held(fitted: &Fitted, lag: &str) -> Result<bool, FitError> {
+    let mut parts = fitted.model.parts().iter();
+    let is_incredible = parts.clone().any(|part| part.effect.name() == lag && !part.is_credible());
+    let has_delay = parts.any(|part| part.effect.name() == DELAY);
+    Ok(is_incredible && has_delay && !only_smooths(fitted, lag)?)
 }
 
 /// Whether wheels or poses are said to follow late, and the reference to be early by as much: together they only smooth the counts, and with
@@ -232,13 +244,7 @@ fn reached(written: &Alone, after: usize, added: Option<&Suspect>) -> Reached {
 
 impl Search {
     /// Adds what is certified as missing, one effect after the other.
-    fn grow(
-        &mut self,
-        options: &Options,
-        (most, wanted): (usize, Wanted),
-        refused: &[&'static str],
-        watch: &Watch,
-    ) -> Result<(), FitError> {
+    fn grow(&mut self, options: &Options, (most, wanted): (usize, Wanted), watch: &Watch) -> Result<(), FitError> {
         while self.added.len() < most {
             if watch.is_stopped() {
                 self.stopped = true;
@@ -255,13 +261,13 @@ impl Search {
                         let gone =
                             if matches!(failed, Growth::Idle) { &mut self.removed } else { &mut self.inseparable };
                         gone.push(suspect.best);
-                        self.left = missing(self.last(), options, &self.passed(refused));
+                        self.left = missing(self.last(), options, &self.passed());
                         continue;
                     }
                 };
                 if !self.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&grown.exam, smooth, options)) {
                     self.take(*grown, Added { suspect, by: Found::Listed(finding) }, watch);
-                    self.left = missing(self.last(), options, &self.passed(refused));
+                    self.left = missing(self.last(), options, &self.passed());
                     continue;
                 }
             }
@@ -277,7 +283,7 @@ impl Search {
                 break;
             };
             self.take(grown, added, watch);
-            self.left = missing(self.last(), options, &self.passed(refused));
+            self.left = missing(self.last(), options, &self.passed());
         }
         Ok(())
     }
@@ -305,6 +311,13 @@ impl Search {
                 exam = fewer;
                 removed.push(effect);
             }
+        }
+        if LAGS.contains(&effect) && !stands(DELAY) && is_held(&exam.fitted, effect)? {
+            exam = Examination::new(without(&exam.fitted, DELAY)?)?;
+            if idle(&exam, |asked| asked == effect).is_some() {
+                return Ok(Growth::Idle);
+            }
+            removed.push(DELAY);
         }
         let mut written = trusted(exam.fitted.clone())?;
         while let Some(incredible) = incredible([&exam.fitted, written.fitted()], |effect| !stands(effect))? {
@@ -465,9 +478,25 @@ impl Search {
         }
     }
 
-    /// Effects that are not tested again, beside those `refused` from the beginning.
-    fn passed(&self, refused: &[&'static str]) -> Vec<&'static str> {
-        refused.iter().chain(&self.removed).chain(&self.harmful).chain(&self.inseparable).copied().collect()
+    /// Effects that are not tested, or not again.
+    fn passed(&self) -> Vec<&'static str> {
+        self.refused.iter().chain(&self.removed).chain(&self.harmful).chain(&self.inseparable).copied().collect()
+    }
+
+    /// Whether an effect is not tested, or not again.
+    pub fn is_refused(&self, effect: &str) -> bool {
+        self.passed().contains(&effect)
+    }
+
+    /// The last model with one more effect as it would be written; `None` where the fit went astray or its values are none of a robot.
+    pub fn tried(&self, grown: Fitted, effect: &str) -> Result<Option<Alone>, FitError> {
+        let exam = self.last().of_grown(grown)?;
+        if astray(&exam, self.last()) {
+            return Ok(None);
+        }
+        let written = trusted(exam.fitted.clone())?;
+        let is_incredible = incredible([&exam.fitted, written.fitted()], |asked| asked == effect)?.is_some();
+        Ok((!is_incredible).then_some(written))
     }
 
     /// Takes back the last effect by which the last model predicts runs left out worse than before it, and all that came after; whether
