@@ -32,9 +32,10 @@ pub fn text(comparison: &TrackComparison, options: &Options, look: Look) -> Stri
     let mut text = format!("Comparison of {models} with {cw} cw + {ccw} ccw{others} tracks, {poses}\n\n");
     let row = |m: &TracksJudged| {
         let explains = m.explains(options.size).map_or("-", |explains| if explains { "yes" } else { "no" });
-        let [along, end] = [&m.along, &m.end].map(|rms| [mm(rms.position), rms.heading.map_or("-".into(), deg)]);
-        let p = m.p.map_or("-".into(), p_text);
-        [vec![m.name.clone()], along.to_vec(), end.to_vec(), vec![p, explains.into()]].concat()
+        let [along, end] =
+            [&m.errors.along, &m.errors.end].map(|rms| [mm(rms.position), rms.heading.map_or("-".into(), deg)]);
+        let p = m.errors.p.map_or("-".into(), p_text);
+        [vec![m.errors.name.clone()], along.to_vec(), end.to_vec(), vec![p, explains.into()]].concat()
     };
     text += &table(
         &["model", "along [mm]", "[deg]", "end [mm]", "[deg]", "p", "explains"],
@@ -46,8 +47,8 @@ pub fn text(comparison: &TrackComparison, options: &Options, look: Look) -> Stri
     text += &hanging("", 0, legend);
     text += &(faults_text(&comparison.setup) + &disturbances_text(&comparison.setup));
     for judged in &comparison.models {
-        text += &format!("\n{}\n\n", judged.name);
-        text += &taken_text(&judged.taken);
+        text += &format!("\n{}\n\n", judged.errors.name);
+        text += &taken_text(&judged.errors.taken);
         for sentence in &judged.sentences {
             text += &hanging("", 2, &format!("  {sentence}"));
         }
@@ -57,7 +58,7 @@ pub fn text(comparison: &TrackComparison, options: &Options, look: Look) -> Stri
         if verbose {
             text += &parts_text(judged, options.size);
             text += &rates_text(judged, terminal, options.size);
-            text += &strips(&judged.residuals, terminal);
+            text += &strips(&judged.errors.residuals, terminal);
         }
     }
     for remark in &comparison.remarks {
@@ -93,7 +94,7 @@ fn parts_text(judged: &TracksJudged, size: f64) -> String {
         "%"
     );
     for by in By::ALL {
-        let parts: Vec<&Part> = judged.parts.iter().filter(|part| part.by == by).collect();
+        let parts: Vec<&Part> = judged.errors.parts.iter().filter(|part| part.by == by).collect();
         let shown = if by == By::Run { RUNS.min(parts.len()) } else { parts.len() };
         for part in &parts[..shown] {
             text += &part_line(part);
@@ -105,7 +106,7 @@ fn parts_text(judged: &TracksJudged, size: f64) -> String {
             text += "\n";
         }
     }
-    if judged.parts.iter().any(|part| shown_share(part) < 0.0) {
+    if judged.errors.parts.iter().any(|part| shown_share(part) < 0.0) {
         text += &hanging("", 0, NEGATIVE_SHARES);
         text += "\n";
     }
@@ -141,7 +142,7 @@ fn part_line(part: &Part) -> String {
 
 /// Errors in proportion to what was driven, and what they depend on.
 fn rates_text(judged: &TracksJudged, terminal: bool, size: f64) -> String {
-    if judged.overall.is_empty() {
+    if judged.errors.overall.is_empty() {
         return String::new();
     }
     let row = |o: &umbmark_core::compare::tracks::Overall| {
@@ -150,7 +151,7 @@ fn rates_text(judged: &TracksJudged, terminal: bool, size: f64) -> String {
         let value = format!("{:.3}", scale * o.mean.value);
         vec![o.rate.name().to_owned(), value, half, unit.to_owned(), o.test.map_or("-".into(), |test| p_text(test.p))]
     };
-    let mut text = table(&["over all", "error", "±", "", "p"], judged.overall.iter().map(row));
+    let mut text = table(&["over all", "error", "±", "", "p"], judged.errors.overall.iter().map(row));
     text += "\n\nwhat the error depends on: bins of each variable, and p of no dependence\n\n";
     text += format!("{:<17}", "").as_str();
     for rate in Rate::DEPENDING {
@@ -158,7 +159,8 @@ fn rates_text(judged: &TracksJudged, terminal: bool, size: f64) -> String {
     }
     text = format!("{}\n", text.trim_end());
     for covariate in &COVARIATES {
-        let of = |rate: Rate| judged.against.iter().find(|a| a.rate == rate && a.covariate.name == covariate.name);
+        let of =
+            |rate: Rate| judged.errors.against.iter().find(|a| a.rate == rate && a.covariate.name == covariate.name);
         let cells: String =
             Rate::DEPENDING.into_iter().map(|rate| format!(" {:<14}", cell(of(rate), terminal))).collect();
         if !cells.trim().is_empty() {

@@ -16,7 +16,7 @@ use crate::evidence::{AnyEvidence, FitError, Level, robot_of};
 pub use replicas::NoiseSource;
 pub use returns::{Comparison, Judged, compare_returns};
 pub use statistics::{Quantity, Statistic};
-pub use tracks::{TrackComparison, compare_tracks};
+pub use tracks::{TrackComparison, compare_tracks, track_errors};
 
 /// The models that are compared with data where none is given: the nominal robot, and that with its first effects fitted, if the data has
 /// no faults. Each has a name.

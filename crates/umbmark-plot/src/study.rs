@@ -8,7 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use umbmark_core::calibrate::{self, Calibration, Estimate, Method, calibrate};
-use umbmark_core::compare::{Comparison, TrackComparison, compare_returns, compare_tracks};
+use umbmark_core::compare::tracks::TrackErrors;
+use umbmark_core::compare::{Comparison, compare_returns, track_errors};
 use umbmark_core::conditions::{Conditions, conditions};
 use umbmark_core::dataset::{Dataset, ReturnError};
 use umbmark_core::diagnose::{self, Diagnosis, diagnose};
@@ -70,7 +71,7 @@ pub struct Study {
     diagnosis: OnceLock<Result<Diagnosis, Absent>>,
     conditions: OnceLock<Result<Conditions, Absent>>,
     comparison: OnceLock<Result<Comparison, Absent>>,
-    along: OnceLock<Result<TrackComparison, Absent>>,
+    along: OnceLock<Result<Vec<TrackErrors>, Absent>>,
     chance: OnceLock<Result<Chance, Absent>>,
     paths: OnceLock<Result<Paths, Absent>>,
     stop: Arc<AtomicBool>,
@@ -234,16 +235,16 @@ impl Study {
         self.once(&self.comparison, work)
     }
 
-    /// The nominal robot and the model beside the tracks.
-    pub fn along(&self) -> Result<&TrackComparison, Absent> {
+    /// The errors of the nominal robot and of the model on the tracks.
+    pub fn along(&self) -> Result<&[TrackErrors], Absent> {
         let work = || {
-            let along = compare_tracks(&self.data, &self.models()?, &self.options.diagnose).map_err(Absent::because)?;
-            match along.poses {
-                0 => Err(Absent("The runs were measured at their ends only, not on the way.".into())),
-                _ => Ok(along),
+            let along = track_errors(&self.data, &self.models()?, &self.options.diagnose).map_err(Absent::because)?;
+            match along.iter().flat_map(|errors| &errors.residuals).all(|run| run.measured.is_empty()) {
+                true => Err(Absent("The runs were measured at their ends only, not on the way.".into())),
+                false => Ok(along),
             }
         };
-        self.once(&self.along, work)
+        self.once(&self.along, work).map(Vec::as_slice)
     }
 
     /// Simulated tests of the model.

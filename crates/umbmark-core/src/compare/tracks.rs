@@ -60,10 +60,10 @@ pub struct TrackResiduals {
     pub errors: Vec<[f64; 3]>,
 }
 
-/// Result of one model on tracks.
+/// Errors of one model on tracks: where they are made, and what they depend on.
 #[derive(Clone, Debug)]
-pub struct TracksJudged {
-    /// Its name.
+pub struct TrackErrors {
+    /// The model's name.
     pub name: String,
     /// Errors along the way: measurements within 3 cm and 3 degrees count as one.
     pub along: Rms,
@@ -84,6 +84,13 @@ pub struct TracksJudged {
     pub residuals: Vec<TrackResiduals>,
     /// Effects of the reference that were taken from the motion: they are large, and the model does not have them.
     pub taken: Vec<Taken>,
+}
+
+/// Result of one model on tracks.
+#[derive(Clone, Debug)]
+pub struct TracksJudged {
+    /// Its errors, and the tests of what they depend on.
+    pub errors: TrackErrors,
     /// Reasons why the model does not explain the runs, regardless of the tests.
     pub reasons: Vec<Reason>,
     /// The remaining error: how much of it is the same in every run, and how much is noise.
@@ -110,7 +117,7 @@ pub struct TrackComparison {
 impl TracksJudged {
     /// Whether no test rejects the model at this size of all tests together; `None` where there is no test.
     pub fn explains(&self, size: f64) -> Option<bool> {
-        if self.reasons.is_empty() { self.p.map(|p| p >= size) } else { Some(false) }
+        if self.reasons.is_empty() { self.errors.p.map(|p| p >= size) } else { Some(false) }
     }
 }
 
@@ -121,7 +128,7 @@ impl TracksJudged {
 /// # let data = Dataset::default();
 /// let nominal = Model::new(data.nominal_robot()?);
 /// let comparison = compare_tracks(&data, &[("nominal".into(), nominal)], &Options::default())?;
-/// for part in &comparison.models[0].parts {
+/// for part in &comparison.models[0].errors.parts {
 ///     println!("{}: {:.1} mm forward, {:.0} %", part.name, 1e3 * part.mean[0].value, 100.0 * part.share.position);
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -134,6 +141,21 @@ pub fn compare_tracks(
     compare(&evidence::tracks::of(data)?, data, models, options)
 }
 
+/// The errors of models, with the values that they have, on tracks, without a judgement whether they explain them, which takes simulations.
+pub fn track_errors(
+    data: &Dataset,
+    models: &[(String, Model)],
+    options: &Options,
+) -> Result<Vec<TrackErrors>, FitError> {
+    let observed = evidence::tracks::of(data)?;
+    check(&observed, models)?;
+    let errors = |(name, model): &(String, Model)| {
+        let (model, taken) = with_reference(&observed, model)?;
+        Ok(TrackErrors { taken, ..errors(name, data, &observed.along(&model), &model, options) })
+    };
+    models.iter().map(errors).collect()
+}
+
 /// Compares models with the tracks of a dataset.
 pub(super) fn compare(
     observed: &Observed,
@@ -141,13 +163,14 @@ pub(super) fn compare(
     models: &[(String, Model)],
     options: &Options,
 ) -> Result<TrackComparison, FitError> {
-    for (_, model) in models {
-        model.check_robot(&observed.robot)?;
-        observed.check(model)?;
-    }
+    check(observed, models)?;
     let judge = |(name, model): &(String, Model)| {
         let (model, taken) = with_reference(observed, model)?;
-        Ok(TracksJudged { taken, ..judge(name, data, &observed.along(&model), &model, options) })
+        let observed = observed.along(&model);
+        let errors = TrackErrors { taken, ..errors(name, data, &observed, &model, options) };
+        let (reasons, remains) = doubts_as_written(&observed, &model, options);
+        let judged = TracksJudged { errors, reasons, remains, sentences: Vec::new() };
+        Ok(TracksJudged { sentences: sentences::of(&judged, options.size), ..judged })
     };
     let of = |direction| observed.runs.iter().filter(|run| run.direction == direction).count();
     Ok(TrackComparison {
@@ -157,6 +180,15 @@ pub(super) fn compare(
         remarks: remarks(observed),
         setup: Arc::clone(&observed.setup),
     })
+}
+
+/// Whether models are of the robot that is observed, and what was measured is enough for them.
+fn check(observed: &Observed, models: &[(String, Model)]) -> Result<(), FitError> {
+    for (_, model) in models {
+        model.check_robot(&observed.robot)?;
+        observed.check(model)?;
+    }
+    Ok(())
 }
 
 /// The model with clock and mounting of the reference as estimated from the motion, if the model does not set them. Values that make the
@@ -190,24 +222,20 @@ fn step_errors(observed: &Observed, model: &Model) -> f64 {
         .sum()
 }
 
-fn judge(name: &str, data: &Dataset, observed: &Observed, model: &Model, options: &Options) -> TracksJudged {
-    let chain = model.chain();
-    let runs = followed::all(observed, &chain);
-    let (reasons, remains) = doubts_as_written(observed, model, options);
-    let parts = parts(data, observed, &runs, 1.0 - options.size);
-    let mut judged = TracksJudged { reasons, remains, parts, ..tested(name, observed, &runs, options) };
-    judged.sentences = sentences::of(&judged, options.size);
-    judged
+/// The errors of a model that the runs lie along.
+fn errors(name: &str, data: &Dataset, observed: &Observed, model: &Model, options: &Options) -> TrackErrors {
+    let runs = followed::all(observed, &model.chain());
+    TrackErrors { parts: parts(data, observed, &runs, 1.0 - options.size), ..tested(name, observed, &runs, options) }
 }
 
 /// The tests of what repeats, and the errors that they are of.
-fn tested(name: &str, observed: &Observed, runs: &[Followed], options: &Options) -> TracksJudged {
+fn tested(name: &str, observed: &Observed, runs: &[Followed], options: &Options) -> TrackErrors {
     let confidence = 1.0 - options.size;
     let overall = rates::overall(runs, &observed.robot, confidence);
     let against = rates::against(runs, &overall, &observed.robot, confidence);
     let tests: Vec<Test> = overall.iter().map(|o| o.test).chain(against.iter().map(|a| a.test)).flatten().collect();
     let smallest = tests.iter().filter(|test| test.matters()).fold(1.0, |least, test| test.p.min(least));
-    TracksJudged {
+    TrackErrors {
         name: name.to_owned(),
         along: rms(runs, |_| 0),
         end: rms(runs, |run| run.places.len() - 1),
@@ -218,9 +246,6 @@ fn tested(name: &str, observed: &Observed, runs: &[Followed], options: &Options)
         parts: Vec::new(),
         residuals: runs.iter().map(residuals).collect(),
         taken: Vec::new(),
-        reasons: Vec::new(),
-        remains: None,
-        sentences: Vec::new(),
     }
 }
 

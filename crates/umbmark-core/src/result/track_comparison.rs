@@ -222,19 +222,19 @@ pub struct JudgedAlong {
 
 impl JudgedAlong {
     fn new(judged: &tracks::TracksJudged, options: &Options) -> JudgedAlong {
-        let parts = |by: By| judged.parts.iter().filter(|part| part.by == by).map(Part::from).collect();
+        let parts = |by: By| judged.errors.parts.iter().filter(|part| part.by == by).map(Part::from).collect();
         JudgedAlong {
-            name: judged.name.clone(),
+            name: judged.errors.name.clone(),
             explains: judged.explains(options.size),
-            p: judged.p,
-            tests: judged.tests,
-            along: (&judged.along).into(),
-            end: (&judged.end).into(),
+            p: judged.errors.p,
+            tests: judged.errors.tests,
+            along: (&judged.errors.along).into(),
+            end: (&judged.errors.end).into(),
             parts: By::ALL.into_iter().map(|by| (by.key(), parts(by))).collect(),
-            overall: judged.overall.iter().map(|overall| (overall.rate.key(), overall.into())).collect(),
-            against: judged.against.iter().map(Against::from).collect(),
+            overall: judged.errors.overall.iter().map(|overall| (overall.rate.key(), overall.into())).collect(),
+            against: judged.errors.against.iter().map(Against::from).collect(),
             sentences: judged.sentences.clone(),
-            taken: taken(&judged.taken),
+            taken: taken(&judged.errors.taken),
             reasons: reasons(&judged.reasons),
             leaves: judged.remains.as_ref().into(),
         }

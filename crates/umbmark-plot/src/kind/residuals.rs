@@ -1,6 +1,6 @@
 //! Where errors of tracks are made and what they depend on, before and after the model.
 
-use umbmark_core::compare::tracks::{Against, Bin, Mean, Rate, TracksJudged};
+use umbmark_core::compare::tracks::{Against, Bin, Mean, Rate, TrackErrors};
 
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::kind::p_is;
@@ -13,8 +13,8 @@ pub(super) const COMPONENTS: [(&str, f64, &str); 3] =
     [("forward", 1e3, "mm"), ("to the left", 1e3, "mm"), ("heading", 180.0 / std::f64::consts::PI, "deg")];
 
 /// The nominal robot and the model beside the tracks.
-pub(super) fn models(study: &Study) -> Result<(&TracksJudged, &TracksJudged), Absent> {
-    match &study.along()?.models[..] {
+pub(super) fn models(study: &Study) -> Result<(&TrackErrors, &TrackErrors), Absent> {
+    match study.along()? {
         [nominal, model] => Ok((nominal, model)),
         _ => Err(Absent("The tracks were not compared.".into())),
     }

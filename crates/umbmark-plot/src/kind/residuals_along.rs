@@ -1,6 +1,6 @@
 //! Errors along each run.
 
-use umbmark_core::compare::tracks::TracksJudged;
+use umbmark_core::compare::tracks::TrackErrors;
 use umbmark_core::path::Direction;
 
 use super::FigureKind;
@@ -47,8 +47,8 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
         equal: false,
         layers,
     };
-    let mm = |judged: &TracksJudged| format!("{:.1}", 1e3 * judged.along.position);
-    let end = |judged: &TracksJudged| format!("{:.1}", 1e3 * judged.end.position);
+    let mm = |judged: &TrackErrors| format!("{:.1}", 1e3 * judged.along.position);
+    let end = |judged: &TrackErrors| format!("{:.1}", 1e3 * judged.end.position);
     let rows = [nominal, model].map(|judged| [judged.name.clone(), mm(judged), end(judged)]);
     Ok(Figure {
         kind: "residuals_along",

@@ -1,6 +1,6 @@
 //! The error that each leg and each turn adds.
 
-use umbmark_core::compare::tracks::{By, Part, TracksJudged};
+use umbmark_core::compare::tracks::{By, Part, TrackErrors};
 
 use super::FigureKind;
 use super::residuals::{COMPONENTS, models, pair_of_layers, with_half};
@@ -12,7 +12,7 @@ pub(super) static FIGURE: FigureKind =
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let (nominal, model) = models(study)?;
-    let moves = |judged: &TracksJudged| -> Vec<Part> {
+    let moves = |judged: &TrackErrors| -> Vec<Part> {
         judged.parts.iter().filter(|part| part.by == By::Move).cloned().collect()
     };
     let (nominal, model) = (moves(nominal), moves(model));

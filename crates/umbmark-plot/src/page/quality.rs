@@ -1,7 +1,7 @@
 //! Whether the data is any good, and how the models do on it.
 
 use umbmark_core::compare::Judged;
-use umbmark_core::compare::tracks::TracksJudged;
+use umbmark_core::compare::tracks::TrackErrors;
 use umbmark_core::evidence::Level;
 
 use super::{List, Rows};
@@ -41,9 +41,9 @@ fn left(study: &Study) -> Option<List> {
 fn models(study: &Study) -> Option<List> {
     if study.diagnosis().is_ok_and(|diagnosis| diagnosis.level == Level::Tracks) {
         let along = study.along().ok()?;
-        let row = |model: &TracksJudged| vec![model.name.clone(), mm(model.along.position), mm(model.end.position)];
+        let row = |model: &TrackErrors| vec![model.name.clone(), mm(model.along.position), mm(model.end.position)];
         let header = ["model", "error along the way [mm]", "at the ends [mm]"];
-        return Some(table("Models compared with the tracks", &header, along.models.iter().map(row).collect()));
+        return Some(table("Models compared with the tracks", &header, along.iter().map(row).collect()));
     }
     let comparison = study.comparison().ok()?;
     let row = |model: &Judged| {

@@ -1,6 +1,6 @@
 //! What a model explains of tracks and what it does not, in plain sentences.
 
-use super::{Against, By, Mean, Part, Test, TracksJudged};
+use super::{Against, By, Mean, Part, Test, TrackErrors, TracksJudged};
 
 /// A part is named if it has this share of the error.
 const MUCH: f64 = 0.2;
@@ -8,33 +8,33 @@ const MUCH: f64 = 0.2;
 const NAMED: usize = 3;
 
 pub(super) fn of(judged: &TracksJudged, size: f64) -> Vec<String> {
-    let mut sentences = Vec::new();
-    if judged.tests == 0 {
+    let (mut sentences, errors) = (Vec::new(), &judged.errors);
+    if errors.tests == 0 {
         sentences.push("Too few runs, or poses too far apart, to test what the errors depend on.".to_owned());
     }
-    let least = size / judged.tests.max(1) as f64;
+    let least = size / errors.tests.max(1) as f64;
     sentences.extend(judged.reasons.iter().map(|reason| format!("Not explained: {}.", reason.sentence())));
-    sentences.extend(levels(judged, least));
-    sentences.extend(dependences(judged, least));
-    if judged.tests > 0 && sentences.is_empty() {
-        sentences.push(format!("Explained: none of {} tests shows a repeating error that matters.", judged.tests));
+    sentences.extend(levels(errors, least));
+    sentences.extend(dependences(errors, least));
+    if errors.tests > 0 && sentences.is_empty() {
+        sentences.push(format!("Explained: none of {} tests shows a repeating error that matters.", errors.tests));
     }
-    sentences.extend(too_small(judged, least));
-    sentences.extend(not_asked(judged));
-    sentences.extend(seen_to(judged));
-    sentences.extend(where_made(&judged.parts));
+    sentences.extend(too_small(errors, least));
+    sentences.extend(not_asked(errors));
+    sentences.extend(seen_to(errors));
+    sentences.extend(where_made(&errors.parts));
     sentences
 }
 
 /// What is off and on what it depends, without more words.
-pub(super) fn accused(judged: &TracksJudged, size: f64) -> Vec<String> {
-    let least = size / judged.tests.max(1) as f64;
-    let told = levels(judged, least).into_iter().chain(dependences(judged, least));
+pub(super) fn accused(errors: &TrackErrors, size: f64) -> Vec<String> {
+    let least = size / errors.tests.max(1) as f64;
+    let told = levels(errors, least).into_iter().chain(dependences(errors, least));
     told.map(|said| said.trim_start_matches("Not explained: ").trim_end_matches('.').to_owned()).collect()
 }
 
-fn levels(judged: &TracksJudged, least: f64) -> Vec<String> {
-    let accused = judged.overall.iter().filter(|o| o.test.is_some_and(|test| test.shows(least) && test.matters()));
+fn levels(errors: &TrackErrors, least: f64) -> Vec<String> {
+    let accused = errors.overall.iter().filter(|o| o.test.is_some_and(|test| test.shows(least) && test.matters()));
     let told = accused.map(|o| {
         let (scale, unit) = o.rate.display();
         let value = with_interval(&o.mean, scale);
@@ -43,10 +43,10 @@ fn levels(judged: &TracksJudged, least: f64) -> Vec<String> {
     told.collect()
 }
 
-fn dependences(judged: &TracksJudged, least: f64) -> Vec<String> {
+fn dependences(errors: &TrackErrors, least: f64) -> Vec<String> {
     let mut sentences = Vec::new();
     for rate in super::Rate::DEPENDING {
-        let of_rate = judged.against.iter().filter(|a| a.rate == rate).filter_map(|a| Some((a.test?, a)));
+        let of_rate = errors.against.iter().filter(|a| a.rate == rate).filter_map(|a| Some((a.test?, a)));
         let accused = of_rate.filter(|(test, _)| test.shows(least) && test.matters());
         let mut accused: Vec<(f64, &Against)> = accused.map(|(test, a)| (test.p, a)).collect();
         accused.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -64,10 +64,10 @@ fn dependences(judged: &TracksJudged, least: f64) -> Vec<String> {
 }
 
 /// Errors that are shown to repeat and would lower the error of other runs by too little.
-fn too_small(judged: &TracksJudged, least: f64) -> Option<String> {
+fn too_small(errors: &TrackErrors, least: f64) -> Option<String> {
     let small = |test: &Option<Test>| test.filter(|test| test.shows(least) && !test.matters()).map(|test| test.gain);
-    let levels = judged.overall.iter().filter_map(|o| Some((format!("{} overall", o.rate.name()), small(&o.test)?)));
-    let dependences = judged
+    let levels = errors.overall.iter().filter_map(|o| Some((format!("{} overall", o.rate.name()), small(&o.test)?)));
+    let dependences = errors
         .against
         .iter()
         .filter_map(|a| Some((format!("{} by {}", a.rate.name(), a.covariate.title), small(&a.test)?)));
@@ -79,21 +79,21 @@ fn too_small(judged: &TracksJudged, least: f64) -> Option<String> {
 }
 
 /// What the counters are too coarse for.
-fn not_asked(judged: &TracksJudged) -> Option<String> {
-    let blurred = judged.against.iter().filter(|against| against.blurred);
+fn not_asked(errors: &TrackErrors) -> Option<String> {
+    let blurred = errors.against.iter().filter(|against| against.blurred);
     let told: Vec<String> = blurred.map(|a| format!("{} by {}", a.rate.name(), a.covariate.title)).collect();
     (!told.is_empty())
         .then(|| format!("Not tested within runs, because one tick is too coarse for it: {}.", told.join("; ")))
 }
 
 /// The smallest overall error that would have been detected.
-fn seen_to(judged: &TracksJudged) -> Option<String> {
+fn seen_to(errors: &TrackErrors) -> Option<String> {
     let half = |o: &super::Overall| {
         let (scale, unit) = o.rate.display();
         let interval = o.mean.interval?;
         Some(format!("{} to ± {:.2} {unit}", o.rate.name(), scale * 0.5 * (interval.high - interval.low)))
     };
-    let seen: Vec<String> = judged.overall.iter().filter_map(half).collect();
+    let seen: Vec<String> = errors.overall.iter().filter_map(half).collect();
     (!seen.is_empty()).then(|| format!("Overall intervals: {}.", seen.join(", ")))
 }
 

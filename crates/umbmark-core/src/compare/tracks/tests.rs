@@ -39,11 +39,11 @@ fn judged(data: &Dataset, model: &Model) -> TracksJudged {
 
 /// The rates against a covariate.
 fn asked<'a>(judged: &'a TracksJudged, rate: Rate, covariate: &str) -> &'a Against {
-    judged.against.iter().find(|a| a.rate == rate && a.covariate.name == covariate).unwrap()
+    judged.errors.against.iter().find(|a| a.rate == rate && a.covariate.name == covariate).unwrap()
 }
 
 fn p_adjusted(judged: &TracksJudged, rate: Rate, covariate: &str) -> f64 {
-    asked(judged, rate, covariate).test.unwrap().p * judged.tests as f64
+    asked(judged, rate, covariate).test.unwrap().p * judged.errors.tests as f64
 }
 
 /// Seed 5, 5 + 5 runs of a robot with one effect that its model lacks.
@@ -66,7 +66,7 @@ fn a_kick_of_casters_shows_in_the_first_centimetres_after_turns_with_its_size_an
         assert!((mean.value * bin.span.sense / expected - 1.0).abs() < 0.25, "{bin:?} {expected}");
     }
     // Leg 1 has no kick; legs 2 to 4 have it, in the sense of the turns.
-    let legs = judged.parts.iter().filter(|p| p.by == By::Move && p.name.starts_with("leg"));
+    let legs = judged.errors.parts.iter().filter(|p| p.by == By::Move && p.name.starts_with("leg"));
     for leg in legs {
         let expected = if leg.name == "leg 1" { 0.0 } else { kick * leg.direction.unwrap().sign() };
         let heading = leg.mean[2];
@@ -103,7 +103,8 @@ fn a_slip_that_grows_with_speed_shows_against_the_speed() {
         .extend(faster.runs.into_iter().map(|run| crate::dataset::Run { name: format!("fast_{}", run.name), ..run }));
     let judged = judged(&data, &robot_with(&[]));
     assert!(p_adjusted(&judged, Rate::Forward, "speed") < 0.01, "{:?}", judged.sentences);
-    let legs: Vec<&Part> = judged.parts.iter().filter(|p| p.by == By::Speed && p.name.starts_with("legs")).collect();
+    let legs: Vec<&Part> =
+        judged.errors.parts.iter().filter(|p| p.by == By::Speed && p.name.starts_with("legs")).collect();
     assert_eq!(legs.len(), 2);
     assert!(legs.iter().all(|leg| leg.count == 24 && leg.mean[0].runs == 6));
 }
@@ -112,12 +113,12 @@ fn a_slip_that_grows_with_speed_shows_against_the_speed() {
 fn a_kick_at_the_start_of_legs_shows_in_every_leg_the_same_way() {
     let kick = 0.02;
     let judged = missing("leg_kick", "kick_rad", kick);
-    for leg in judged.parts.iter().filter(|p| p.by == By::Kind && p.name == "all legs") {
+    for leg in judged.errors.parts.iter().filter(|p| p.by == By::Kind && p.name == "all legs") {
         assert!((leg.mean[2].value - kick).abs() < 3e-3, "{leg:?}");
         assert!(leg.mean[2].interval.unwrap().contains(kick));
         assert_eq!(leg.count, 20);
     }
-    let turns = judged.parts.iter().find(|p| p.by == By::Kind && p.name == "all turns").unwrap();
+    let turns = judged.errors.parts.iter().find(|p| p.by == By::Kind && p.name == "all turns").unwrap();
     assert!(turns.mean[2].value.abs() < 3e-3, "{turns:?}");
     assert!(judged.sentences.iter().any(|s| s.starts_with("Not explained: yaw is off by")), "{:?}", judged.sentences);
 }
@@ -135,14 +136,15 @@ fn a_wheelbase_that_depends_on_the_sense_of_the_turn_shows_in_turns() {
 fn shares_add_up_to_one_however_parts_are_gathered_and_those_of_one_cause_lie_where_it_is() {
     let judged = missing("caster_kick", "kick_rad", 0.02);
     for by in [By::Move, By::Kind, By::Direction, By::Run] {
-        let of =
-            |value: fn(&Share) -> f64| judged.parts.iter().filter(|p| p.by == by).map(|p| value(&p.share)).sum::<f64>();
+        let of = |value: fn(&Share) -> f64| {
+            judged.errors.parts.iter().filter(|p| p.by == by).map(|p| value(&p.share)).sum::<f64>()
+        };
         for sum in [of(|s| s.position), of(|s| s.heading), of(|s| s.end)] {
             assert!((sum - 1.0).abs() < 1e-9, "{by:?}: {sum}");
         }
     }
     let of = |name: &str| {
-        let parts = judged.parts.iter().filter(|p| p.by == By::Kind && p.name == name);
+        let parts = judged.errors.parts.iter().filter(|p| p.by == By::Kind && p.name == name);
         parts.map(|p| p.share.position).sum::<f64>()
     };
     assert!(of("all legs") > 0.9 && of("all turns").abs() < 0.1, "{} {}", of("all legs"), of("all turns"));
@@ -151,16 +153,16 @@ fn shares_add_up_to_one_however_parts_are_gathered_and_those_of_one_cause_lie_wh
 #[test]
 fn whole_runs_end_with_the_error_of_their_last_place() {
     let judged = missing("floor_slope", "drift_x", 6e-3);
-    let runs: Vec<&Part> = judged.parts.iter().filter(|p| p.by == By::Run).collect();
+    let runs: Vec<&Part> = judged.errors.parts.iter().filter(|p| p.by == By::Run).collect();
     let mut squares = 0.0;
-    for (part, residuals) in runs.iter().zip(&judged.residuals) {
+    for (part, residuals) in runs.iter().zip(&judged.errors.residuals) {
         let last = residuals.errors.last().unwrap();
         for k in 0..3 {
             assert!((part.mean[k].value - last[k]).abs() < 1e-12, "{part:?} {last:?}");
         }
         squares += last[0] * last[0] + last[1] * last[1];
     }
-    assert!((judged.end.position - (squares / 10.0).sqrt()).abs() < 1e-12);
+    assert!((judged.errors.end.position - (squares / 10.0).sqrt()).abs() < 1e-12);
 }
 
 /// Poses only at stops: the error of each move is measured, but no rate.
@@ -177,8 +179,9 @@ fn poses_at_stops_tell_of_moves_and_not_of_rates() {
         assert!((8..=9).contains(&log.reference.len()), "{}", log.reference.len());
     }
     let judged = judged(&data, &robot_with(&[]));
-    assert!(judged.overall.is_empty() && judged.against.is_empty() && judged.p.is_none());
-    let legs: Vec<&Part> = judged.parts.iter().filter(|p| p.by == By::Move && p.name.starts_with("leg")).collect();
+    assert!(judged.errors.overall.is_empty() && judged.errors.against.is_empty() && judged.errors.p.is_none());
+    let legs: Vec<&Part> =
+        judged.errors.parts.iter().filter(|p| p.by == By::Move && p.name.starts_with("leg")).collect();
     assert_eq!(legs.len(), 8);
     assert!(legs.iter().all(|leg| (leg.mean[2].value - 0.02).abs() < 5e-3), "{legs:?}");
     assert!(judged.sentences[0].starts_with("Too few runs, or poses too far apart"));
@@ -192,7 +195,7 @@ fn without_headings_the_way_is_still_told_and_yaw_is_not() {
     }
     let comparison = compare_tracks(&data, &[("asked".into(), robot_with(&[]))], &Options::default()).unwrap();
     let judged = &comparison.models[0];
-    assert!(judged.along.heading.is_none() && judged.overall.iter().all(|o| o.rate == Rate::Forward));
+    assert!(judged.errors.along.heading.is_none() && judged.errors.overall.iter().all(|o| o.rate == Rate::Forward));
     assert!(p_adjusted(judged, Rate::Forward, "heading") < 0.01);
     assert!(comparison.remarks.iter().any(|remark| remark.starts_with("Headings were not measured")));
 }
@@ -206,9 +209,14 @@ fn the_place_of_the_marker_is_taken_from_the_motion_only_where_the_model_does_no
     truth.add_formula(crab, &[0.03]).unwrap();
     let data = watched(&truth, 5, 11);
     let [right, without] = [&truth, &robot_with(&[])].map(|model| judged(&data, model));
-    assert_eq!(right.taken, []);
-    assert_eq!(without.taken.iter().map(|taken| taken.effect).collect::<Vec<_>>(), ["marker_offset"]);
-    assert!(right.along.position < 1.1 * without.along.position, "{} {}", right.along.position, without.along.position);
+    assert_eq!(right.errors.taken, []);
+    assert_eq!(without.errors.taken.iter().map(|taken| taken.effect).collect::<Vec<_>>(), ["marker_offset"]);
+    assert!(
+        right.errors.along.position < 1.1 * without.errors.along.position,
+        "{} {}",
+        right.errors.along.position,
+        without.errors.along.position
+    );
 }
 
 /// A clock that is wrong by 60 ms at START and correct in the middle of a run: its offset without its rate makes the poses worse.
@@ -218,9 +226,9 @@ fn offset_and_rate_of_the_clock_are_taken_together_though_neither_helps_alone() 
     let duration = watched(&model, 1, 3).runs[0].log.as_ref().unwrap().time.last().copied().unwrap();
     let clock = [("reference_delay", "delay_s", 0.06), ("reference_clock_rate", "ratio", -0.12 / duration)];
     let judged = judged(&watched(&robot_with(&clock), 5, 3), &model);
-    let taken: Vec<&str> = judged.taken.iter().map(|taken| taken.effect).collect();
+    let taken: Vec<&str> = judged.errors.taken.iter().map(|taken| taken.effect).collect();
     assert_eq!(taken, ["reference_delay", "reference_clock_rate"]);
-    assert!(judged.along.position < 0.03, "{:?}", judged.along);
+    assert!(judged.errors.along.position < 0.03, "{:?}", judged.errors.along);
 }
 
 /// A robot that creeps ahead by 0.3 mm for each radian of a turn: it is shown, and it makes nothing worse that matters.
@@ -230,9 +238,9 @@ fn an_error_that_repeats_but_is_worth_nothing_does_not_accuse() {
     let creep = Formula::new("own", Target::ForwardPerRadian, "a", &["a"]).unwrap();
     truth.add_formula(creep, &[3e-4]).unwrap();
     let judged = judged(&watched(&truth, 10, 5), &robot_with(&[]));
-    assert_eq!(judged.taken, []);
-    let of = |rate: Rate| judged.overall.iter().find(|o| o.rate == rate).and_then(|o| o.test).unwrap();
-    let (small, tests) = (of(Rate::TurnForward), judged.tests as f64);
+    assert_eq!(judged.errors.taken, []);
+    let of = |rate: Rate| judged.errors.overall.iter().find(|o| o.rate == rate).and_then(|o| o.test).unwrap();
+    let (small, tests) = (of(Rate::TurnForward), judged.errors.tests as f64);
     assert!(small.p * tests < 0.01 && !small.matters(), "{small:?}");
     assert_eq!(judged.explains(0.05), Some(true), "{:?}", judged.sentences);
     let said = judged
@@ -269,7 +277,7 @@ fn speeds_that_the_ticks_blur_are_not_asked() {
     let truth = of_robot(&coarse, &[]);
     let told = judged(&watched(&truth, 5, 7), &truth);
     let asked = |judged: &TracksJudged, covariate: &str| {
-        judged.against.iter().filter(|a| a.covariate.name == covariate && a.test.is_some()).count()
+        judged.errors.against.iter().filter(|a| a.covariate.name == covariate && a.test.is_some()).count()
     };
     assert_eq!(asked(&told, "turn_rate"), 0, "{:?}", told.sentences);
     let said = told.sentences.iter().find(|said| said.starts_with("Not tested within runs")).unwrap();
@@ -286,26 +294,30 @@ fn a_right_model_is_accused_no_more_often_than_is_asked() {
     let trials = trials(24);
     let truth = robot_with(&[]);
     let circle = Path::new(&CIRCLE, &[1.0, 1.0], SpeedProfile::default()).unwrap();
-    for (case, fitted) in [("squares", false), ("circles", false), ("squares, fitted", true)] {
-        let outcomes: Vec<(bool, usize, usize)> = (0..trials)
-            .into_par_iter()
-            .map(|trial| {
-                let data = if case == "circles" {
-                    watched_on(&circle, &truth, 5, 100 + trial)
-                } else {
-                    watched(&truth, 5, 100 + trial)
-                };
-                let model = if fitted {
-                    evidence::fit(&data, &first_model(&data).unwrap()).unwrap().model
-                } else {
-                    truth.clone()
-                };
-                let judged = judged(&data, &model);
-                let tests = judged.overall.iter().map(|o| o.test).chain(judged.against.iter().map(|a| a.test));
-                let p = tests.flatten().map(|test| test.p);
-                (judged.explains(0.05) == Some(false), p.filter(|p| *p < 0.05).count(), judged.tests)
-            })
-            .collect();
+    let models = |data: &Dataset, fitted: bool| {
+        let model = fitted.then(|| evidence::fit(data, &first_model(data).unwrap()).unwrap().model);
+        [Some(truth.clone()), model].into_iter().flatten().map(|model| (String::new(), model)).collect::<Vec<_>>()
+    };
+    let outcomes = |path: Option<&Path>| -> Vec<Vec<(bool, usize, usize)>> {
+        let outcome = |judged: &TracksJudged| {
+            let tests =
+                judged.errors.overall.iter().map(|o| o.test).chain(judged.errors.against.iter().map(|a| a.test));
+            let p = tests.flatten().map(|test| test.p);
+            (judged.explains(0.05) == Some(false), p.filter(|p| *p < 0.05).count(), judged.errors.tests)
+        };
+        let of = |trial| {
+            let data = match path {
+                Some(path) => watched_on(path, &truth, 5, 100 + trial),
+                None => watched(&truth, 5, 100 + trial),
+            };
+            let compared = compare_tracks(&data, &models(&data, path.is_none()), &Options::default()).unwrap();
+            compared.models.iter().map(outcome).collect()
+        };
+        (0..trials).into_par_iter().map(of).collect()
+    };
+    let [squares, circles] = [None, Some(&circle)].map(outcomes);
+    for (case, of, place) in [("squares", &squares, 0), ("circles", &circles, 0), ("squares, fitted", &squares, 1)] {
+        let outcomes: Vec<_> = of.iter().map(|models| models[place]).collect();
         let share = outcomes.iter().filter(|o| o.0).count() as f64 / trials as f64;
         let (small, tests) = outcomes.iter().fold((0, 0), |(s, t), o| (s + o.1, t + o.2));
         let single = small as f64 / tests as f64;
@@ -316,5 +328,20 @@ fn a_right_model_is_accused_no_more_often_than_is_asked() {
         assert!(share < 0.05 + margin(0.05, trials), "{case}: {share}");
         // Single tests of one data set are correlated; their number counts as that of the sets.
         assert!(single < 0.05 + margin(0.05, trials), "{case}: {single}");
+    }
+}
+
+/// The report and the figures take the errors without the judgement.
+#[test]
+fn errors_alone_are_those_of_the_comparison() {
+    let kick = robot_with(&[("caster_kick", "kick_rad", 0.02)]);
+    let data = watched(&kick, 2, 5);
+    let models = [("nominal".to_owned(), robot_with(&[])), ("true".to_owned(), kick)];
+    let alone = track_errors(&data, &models, &Options::default()).unwrap();
+    let compared = compare_tracks(&data, &models, &Options::default()).unwrap();
+    assert_eq!(alone.len(), 2);
+    for (alone, judged) in alone.iter().zip(&compared.models) {
+        assert_eq!(format!("{alone:?}"), format!("{:?}", judged.errors));
+        assert!(alone.along.position > 0.0 && !alone.residuals.is_empty());
     }
 }
