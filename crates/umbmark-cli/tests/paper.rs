@@ -66,7 +66,7 @@ fn what_a_drive_does_not_have_is_refused_with_a_reason() {
     for (arguments, message) in [
         (
             &["mc", "--robot", "k2a", "--ed", "1.01"][..],
-            "error: wheel_diameter_ratio is an effect of other drives (differential and clapper), and the robot has drive = \
+            "error: wheel_diameter_ratio is an effect of other drives (differential, clapper and skid_steer), and the robot has drive = \
              \"synchro\"; leave it out\n",
         ),
         (

@@ -17,6 +17,7 @@ macro_rules! every_drive {
             Omni3(omni3::Omni3Drive),
             Omni4(omni4::Omni4Drive),
             DeadWheels(dead_wheels::DeadWheelsDrive),
+            SkidSteer(skid_steer::SkidSteerDrive),
         }
     };
 }
@@ -147,6 +148,13 @@ macro_rules! drives {
             pub fn axle_distance(&self) -> f64 {
                 match self {
                     $(Drive::$kind(drive) => drive.axle_distance(),)+
+                }
+            }
+
+            /// Distance of the wheels on the left from those on the right, as a tape measures it \[m\].
+            pub fn track_width(&self) -> f64 {
+                match self {
+                    $(Drive::$kind(drive) => drive.track_width(),)+
                 }
             }
 

@@ -309,7 +309,7 @@ pub trait Effect {
     const ABOUT: About;
 
     /// The drives that may have it.
-    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential);
+    const DRIVES: DriveKinds = DriveKinds::DIFFERENTIAL;
 
     /// Meaning of these values for the robot, in a sentence; empty if there is none.
     fn means(_p: &[f64], _robot: &Robot) -> String {

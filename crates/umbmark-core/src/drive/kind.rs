@@ -175,6 +175,9 @@ impl DriveKinds {
     /// Every drive.
     pub const ALL: DriveKinds = DriveKinds((1 << DriveKind::ALL.len()) - 1);
 
+    /// Those whose two sides have wheels ahead of which nothing steers.
+    pub const DIFFERENTIAL: DriveKinds = DriveKinds::of(DriveKind::Differential).and(DriveKind::SkidSteer);
+
     /// One kind.
     pub const fn of(kind: DriveKind) -> DriveKinds {
         DriveKinds(1 << kind as u8)

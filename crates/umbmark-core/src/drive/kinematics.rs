@@ -106,6 +106,11 @@ pub(super) trait Kinematics: Sized {
         self.axle().wheelbase()
     }
 
+    /// See [`Drive::track_width`](super::Drive::track_width).
+    fn track_width(&self) -> f64 {
+        self.axle().wheelbase()
+    }
+
     /// What the counters do in a move; `None` for a turn that the drive cannot make.
     fn counting(&self, encoder: &Encoder, forward: f64, rotation: f64) -> Option<Counting> {
         let (per_tick, travel) = (self.axle().metres_per_tick(encoder), self.axle().wheel_travel(forward, rotation));

@@ -40,7 +40,7 @@ impl Effect for Bumps {
                  for wheel radii of 66 to 75 mm",
     };
 
-    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential)
+    const DRIVES: DriveKinds = DriveKinds::DIFFERENTIAL
         .and(DriveKind::Synchro)
         .and(DriveKind::Mecanum)
         .and(DriveKind::Omni3)

@@ -2,7 +2,7 @@
 
 use super::words::{deg, either, mm};
 use super::{About, ActsOn, Effect, Entry};
-use crate::drive::Robot;
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::parameter::Parameter;
 use umbmark_odometry::law::CasterKick;
 
@@ -38,6 +38,8 @@ impl Effect for CasterKick {
                        casters",
         source: "users' reports of drift after a change of direction; 0.2 degree and 5 cm are assumed",
     };
+
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

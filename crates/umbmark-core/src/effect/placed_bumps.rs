@@ -48,7 +48,7 @@ impl Effect for PlacedBumps {
         source: "Borenstein & Feng (1995), section 3.3 and Table II",
     };
 
-    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential).and(DriveKind::Synchro).and(DriveKind::Clapper);
+    const DRIVES: DriveKinds = DriveKinds::DIFFERENTIAL.and(DriveKind::Synchro).and(DriveKind::Clapper);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let (single, share) = (lost_travel(p[1], p[2], p[3]), p[4]);

@@ -40,8 +40,7 @@ impl Effect for Scale {
         source: "Borenstein & Feng (1995), section 2",
     };
 
-    const DRIVES: DriveKinds =
-        DriveKinds::of(DriveKind::Differential).and(DriveKind::Ackermann).and(DriveKind::Clapper);
+    const DRIVES: DriveKinds = DriveKinds::DIFFERENTIAL.and(DriveKind::Ackermann).and(DriveKind::Clapper);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let (off, word) = (p[0] - 1.0, either(p[0] - 1.0, "long", "short"));

@@ -37,7 +37,7 @@ impl Effect for WheelDiameterRatio {
                  Automation 12(6)",
     };
 
-    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential).and(DriveKind::Clapper);
+    const DRIVES: DriveKinds = DriveKinds::DIFFERENTIAL.and(DriveKind::Clapper);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let ratio = 2.0 * (p[0] - 1.0) / (p[0] + 1.0);

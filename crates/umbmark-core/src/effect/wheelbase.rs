@@ -33,7 +33,7 @@ impl Effect for Wheelbase {
         source: "Borenstein & Feng (1995), section 2",
     };
 
-    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential).and(DriveKind::Clapper);
+    const DRIVES: DriveKinds = DriveKinds::DIFFERENTIAL.and(DriveKind::Clapper);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let b = robot.drive.wheelbase();

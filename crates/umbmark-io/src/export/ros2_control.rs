@@ -130,9 +130,9 @@ fn of_two_wheels(export: &Export) -> Result<Vec<(&'static str, f64)>, ExportErro
     let (nominal, corrected) = (export.robot().drive, export.corrected()?.drive);
     let radius = 0.25 * (nominal.wheel_diameter_left() + nominal.wheel_diameter_right());
     Ok(vec![
-        ("wheel_separation", nominal.wheelbase()),
+        ("wheel_separation", nominal.track_width()),
         ("wheel_radius", radius),
-        ("wheel_separation_multiplier", corrected.wheelbase() / nominal.wheelbase()),
+        ("wheel_separation_multiplier", corrected.wheelbase() / nominal.track_width()),
         ("left_wheel_radius_multiplier", 0.5 * corrected.wheel_diameter_left() / radius),
         ("right_wheel_radius_multiplier", 0.5 * corrected.wheel_diameter_right() / radius),
     ])

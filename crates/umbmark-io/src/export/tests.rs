@@ -1,5 +1,5 @@
 use super::*;
-use umbmark_core::drive::{DifferentialDrive, DriveKind, Encoder};
+use umbmark_core::drive::{DifferentialDrive, DriveKind, Encoder, SkidSteerDrive};
 use umbmark_core::path::{CIRCLE, Path, SQUARE, SpeedProfile, WAYPOINTS};
 
 const RATIOS: [(&str, &str, f64); 2] = [("wheel_diameter_ratio", "e_d", 1.00121), ("wheelbase", "e_b", 337.2 / 340.0)];
@@ -62,6 +62,15 @@ fn the_ros2_file_multiplies_and_every_number_in_it_has_a_decimal_point() {
     let yaml = written("ros2_control", &Export::of(&Model::new(&unequal))).text;
     assert!(yaml.contains("diff_drive_controller:\n"));
     assert!(yaml.contains("left_wheel_radius_multiplier: 1.333333333\n") && yaml.contains("wheel_separation: 1.0\n"));
+}
+
+/// The driver of a skid-steer base multiplies what a tape measures.
+#[test]
+fn the_multiplier_of_a_skid_steer_base_is_corrected_and_its_sides_stay_where_they_are() {
+    let drive = SkidSteerDrive::new(0.4, 1.8, 0.2, 0.2).unwrap().into();
+    let yaml = written("ros2_control", &Export::of(&model_of(&Robot { drive, ..Robot::labmate() }, &RATIOS))).text;
+    assert!(yaml.contains("diff_drive_controller:\n") && yaml.contains("    wheel_separation: 0.4\n"), "{yaml}");
+    assert!((value(&yaml, "wheel_separation_multiplier", ": ") - 1.8 * 337.2 / 340.0).abs() < 1e-9);
 }
 
 #[test]

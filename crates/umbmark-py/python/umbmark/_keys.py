@@ -17,6 +17,7 @@ Drive: TypeAlias = Literal[
     "omni3",
     "omni4",
     "dead_wheels",
+    "skid_steer",
 ]
 Shape: TypeAlias = Literal[
     "square",
@@ -163,6 +164,7 @@ class RobotKeys(TypedDict, total=False):
     wheel_distance_m: float | None
     wheel_offset_rad: float | None
     across_wheel_ahead_m: float | None
+    wheel_separation_multiplier: float | None
 
 
 class MotionKeys(TypedDict, total=False):
