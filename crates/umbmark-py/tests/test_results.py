@@ -188,13 +188,19 @@ STUDIES: dict[str, tuple[Callable[[Path], Result], str]] = {
 }
 
 
+@cache
+def study_of(name: str, grades: Path) -> Result:
+    """Return what the call gives, worked out once."""
+    return STUDIES[name][0](grades)
+
+
 @pytest.mark.parametrize("name", STUDIES)
 def test_a_study_is_the_document_of_the_command(name: str, command: Path, grades: Path) -> None:
-    call, words = STUDIES[name]
+    words = STUDIES[name][1]
     expected = told(command, *words.format(grades).split())
     # What the command assumes, Python is told.
     assumed = {"assumed": expected["assumed"]} if "assumed" in expected else {}
-    assert call(grades).to_dict() | assumed == expected
+    assert study_of(name, grades).to_dict() | assumed == expected
 
 
 def printed(command: Path, *arguments: str | Path) -> str:
@@ -206,8 +212,8 @@ def printed(command: Path, *arguments: str | Path) -> str:
 
 @pytest.mark.parametrize("name", [name for name in STUDIES if "paper" not in name])
 def test_a_study_is_printed_as_by_the_command(name: str, command: Path, grades: Path) -> None:
-    call, words = STUDIES[name]
-    assert f"{call(grades)}\n" == printed(command, *words.format(grades).split())
+    words = STUDIES[name][1]
+    assert f"{study_of(name, grades)}\n" == printed(command, *words.format(grades).split())
 
 
 def test_trials_are_printed_as_by_the_command_but_for_their_speed(
@@ -227,7 +233,7 @@ def test_trials_are_printed_as_by_the_command_but_for_their_speed(
 
 @pytest.mark.parametrize("name", STUDIES)
 def test_a_study_has_a_table_a_figure_and_a_pickle(name: str, grades: Path) -> None:
-    has_all(STUDIES[name][0](grades))
+    has_all(study_of(name, grades))
 
 
 @pytest.mark.parametrize("verb", CALLS)
@@ -400,7 +406,8 @@ def test_the_sheet_of_a_plan_is_that_of_the_command(command: Path, tmp_path: Pat
 
 
 def test_a_model_that_was_learnt_explains_the_data(folder: Path) -> None:
-    learnt = umbmark.learn(folder, draws=199)
+    learnt = result_of("learn", folder)
+    assert isinstance(learnt, umbmark.Learnt)
     assert learnt.steps[0].added is None
     errors = [step.heldout_rmse_m for step in learnt.steps]
     assert errors[-1] is not None
@@ -537,9 +544,11 @@ def test_a_score_of_arrays_is_printed_without_a_figure(data: umbmark.Dataset) ->
 
 
 def test_notebooks_show_verdict_sentence_and_a_table_in_millimetres_and_degrees(
-    data: umbmark.Dataset,
+    data: umbmark.Dataset, folder: Path
 ) -> None:
-    learnt = umbmark.learn(data, draws=99)
+    learnt, answer = (result_of(verb, folder) for verb in ("learn", "solve"))
+    assert isinstance(learnt, umbmark.Learnt)
+    assert isinstance(answer, umbmark.Solution)
     html = learnt._repr_html_()
     assert html.startswith(f"<p><b>{learnt.verdict}</b></p><p>The robot comes back ")
     assert "<th>added</th><th>p adjusted</th><th>rmse [mm]</th>" in html
@@ -548,14 +557,14 @@ def test_notebooks_show_verdict_sentence_and_a_table_in_millimetres_and_degrees(
     assert last.rmse_m is not None
     assert f"<td>{1e3 * last.rmse_m:.5g}</td>" in html
     assert f"<td>{last.added}</td>" in html
-    solved = umbmark.solve(data, draws=99)._repr_html_()
-    new = 1e3 * umbmark.solve(data, draws=99).correction["wheelbase_m"].new
+    solved = answer._repr_html_()
+    new = 1e3 * answer.correction["wheelbase_m"].new
     assert f"<td>wheelbase [mm]</td><td>340</td><td>{new:.5g}</td>" in solved
     heading = umbmark.score(data).return_heading_cw_rad
     assert heading is not None
     shown = umbmark.score(data)._repr_html_()
     assert f"<td>return heading cw [deg]</td><td>{np.degrees(heading):.5g}</td>" in shown
-    rates = umbmark.fit(data, add=["floor_slope"])._repr_html_()
+    rates = result_of("fit", folder)._repr_html_()
     assert "<td>drift_x</td>" in rates
     found = umbmark.monte_carlo(NOISE, n=100)
     assert str(found).startswith("Monte Carlo of UMBmark: 100 trials of ")
