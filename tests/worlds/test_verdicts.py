@@ -183,12 +183,15 @@ def test_a_delay_of_the_motion_gives_way_to_the_filter_that_is_there(tmp_path: F
 
 
 def test_a_filter_that_two_runs_cannot_certify_is_a_reason_for_doubt(tmp_path: File) -> None:
-    # A delay leaves 15 mm where the filter that is there leaves 4.5: F says so, the flips of two runs cannot.
+    # A delay leaves 15 mm where the filter that is there leaves 4.5, which two runs cannot certify.
     write(make("low_pass", 9107, []), tmp_path)
     words = [str(COMMAND), "learn", str(tmp_path), "--json"]
     learnt = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
     assert learnt["verdict"] == "not_explained"
-    assert any("predicted 71 % better with wheel_lag or reference_filter" in reason for reason in learnt["reasons"])
+    assert any(
+        "predicted 71 % better with wheel_lag or reference_filter" in reason
+        for reason in learnt["reasons"]
+    )
 
 
 def test_turns_on_the_spot_show_the_wheelbase_beside_a_scale_that_is_kept(tmp_path: File) -> None:
