@@ -138,6 +138,67 @@ def test_columns_may_have_any_name(frame: pd.DataFrame, data: umbmark.Dataset) -
     assert len(alone[0].reference_pose) == 0
 
 
+BERLIN = pd.Timestamp("2024-03-31T01:59:59", tz="Europe/Berlin")
+
+
+def dated(frame: pd.DataFrame) -> pd.DataFrame:
+    """Give the times as dates with a time zone, of a night in which clocks were put forward."""
+    return frame.assign(t_s=BERLIN + pd.to_timedelta(frame["t_s"], unit="s"))
+
+
+DATED: dict[str, Callable[[pd.DataFrame], Any]] = {
+    "dates in a zone": lambda frame: frame,
+    "an index of dates": lambda frame: frame.set_index("t_s"),
+    "two indices": lambda frame: frame.set_index(["run", "t_s"]),
+    "dates of Python": lambda frame: {
+        name: [*frame[name]] if name != "t_s" else [at.to_pydatetime() for at in frame[name]]
+        for name in frame
+    },
+    "polars": pl.from_pandas,
+    "Arrow": lambda frame: pa.Table.from_pandas(frame, preserve_index=False),
+    "pandas on Arrow": lambda frame: frame.convert_dtypes(dtype_backend="pyarrow"),
+}
+
+
+@pytest.mark.parametrize("kind", DATED)
+def test_times_may_be_dates_in_a_zone_or_an_index(kind: str, frame: pd.DataFrame) -> None:
+    expected = umbmark.Dataset.from_frame(frame, robot=ROBOT)
+    made = umbmark.Dataset.from_frame(DATED[kind](dated(frame)), robot=ROBOT)
+    assert [run.name for run in made] == [run.name for run in expected]
+    for one, two in zip(made, expected, strict=True):
+        # Dates of Python have microseconds.
+        np.testing.assert_allclose(one.time_s, two.time_s, atol=2e-6)  # type: ignore[arg-type]
+        np.testing.assert_array_equal(one.ticks_left, two.ticks_left)
+
+
+def test_an_index_without_a_name_is_called_index(frame: pd.DataFrame) -> None:
+    nameless = frame.set_index("t_s").rename_axis(None)
+    made = umbmark.Dataset.from_frame(nameless, robot=ROBOT, t="index")
+    assert made == umbmark.Dataset.from_frame(frame, robot=ROBOT)
+    with pytest.raises(ValueError, match='no column "t_s" in the frame; it has ticks_left'):
+        umbmark.Dataset.from_frame(nameless, robot=ROBOT)
+    with pytest.raises(ValueError, match='no column "time" in the frame; it has t_s, ticks_left'):
+        umbmark.Dataset.from_frame(frame.set_index("t_s"), robot=ROBOT, t="time")
+
+
+def test_rows_without_a_time_or_a_run_are_refused(frame: pd.DataFrame) -> None:
+    dates = dated(frame).t_s
+    for times in (dates, dates.dt.tz_localize(None)):
+        unknown = frame.assign(t_s=times.where(frame.index != 2))
+        with pytest.raises(ValueError, match=r"t_s\[2\] must be a (date|time).*, got NaT"):
+            umbmark.Dataset.from_frame(unknown, robot=ROBOT)
+    for labels in (frame.run, pd.Series(np.arange(len(frame)), dtype="Int64")):
+        unknown = frame.assign(run=labels.where(frame.index != 3))
+        for made in (unknown, pl.from_pandas(unknown)):
+            with pytest.raises(ValueError, match=r"run\[3\] must name the run of its row, got "):
+                umbmark.Dataset.from_frame(made, robot=ROBOT)
+
+
+def test_a_query_that_has_not_been_run_is_refused(frame: pd.DataFrame) -> None:
+    with pytest.raises(TypeError, match=r"pass frame\.collect\(\)"):
+        umbmark.Dataset.from_frame(pl.from_pandas(frame).lazy(), robot=ROBOT)
+
+
 def test_counters_roll_over_and_poses_have_a_frame_of_their_own_as_in_files(
     frame: pd.DataFrame,
 ) -> None:

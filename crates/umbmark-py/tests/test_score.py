@@ -14,6 +14,7 @@ The paper numbers only Eqs. 1, 5 and 6; 2 to 4 are the displays between them.
 """
 
 import re
+from pathlib import Path
 from typing import Any
 
 import hypothesis.extra.numpy as hnp
@@ -349,3 +350,26 @@ def test_the_repr_shows_what_is_known_with_six_digits() -> None:
         f"    version='{umbmark.__version__}',\n"
         ")"
     )
+
+
+def test_several_places_are_scored_as_one_dataset(tmp_path: Path) -> None:
+    cw, ccw = np.zeros((3, 3)), np.full((3, 3), 0.1)
+    places = [tmp_path / "one", tmp_path / "two"]
+    for place in places:
+        umbmark.Dataset.from_arrays(cw, ccw, robot=umbmark.Robot.labmate()).save(place)
+    found = umbmark.score(places)
+    assert found == umbmark.score(umbmark.load_dataset(places))
+    assert found == umbmark.score([str(place) for place in places])
+    assert found.n_cw == 6
+
+
+def test_arrays_beside_a_dataset_are_refused(tmp_path: Path) -> None:
+    robot = umbmark.Robot.labmate()
+    data = umbmark.Dataset.from_arrays(np.zeros((3, 3)), np.full((3, 3), 0.1), robot=robot)
+    data.save(tmp_path)
+    scored: Any
+    for scored in (data, tmp_path, str(tmp_path), [tmp_path]):
+        with pytest.raises(TypeError, match="ccw goes with return errors in arrays, but the first"):
+            umbmark.score(scored, np.ones((3, 3)))
+        with pytest.raises(TypeError, match="bumps_cw goes with return errors in arrays"):
+            umbmark.score(scored, bumps_cw=np.ones((3, 3)))  # type: ignore[call-overload]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol, SupportsIndex, TypeAlias
 
 import numpy as np
@@ -95,6 +95,28 @@ def real(name: str, value: Any) -> float:
         raise TypeError(f"{name} must be a number, got {value!r} ({got})") from None
 
 
+def names(name: str, value: Any) -> list[str]:
+    """Give names as a list; a text is one of them, not its letters."""
+    if isinstance(value, str):
+        return [value]
+    try:
+        given = [*value]
+    except TypeError:
+        given = [value]
+    for one in given:
+        if not isinstance(one, str):
+            raise TypeError(f"{name} must be names, got {one!r} ({type(one).__name__})")
+    return given
+
+
+def by_name(name: str, value: Any, wanted: str) -> list[tuple[str, Any]]:
+    """Give the items of a mapping by names."""
+    if not isinstance(value, Mapping):
+        got = type(value).__name__
+        raise TypeError(f"{name} must be a mapping of names to {wanted}, got {value!r} ({got})")
+    return [*value.items()]
+
+
 def column(name: str, value: Numbers) -> NDArray[np.float64]:
     """Give numbers of any real type, sequence or frame as an array of shape (n,)."""
     array = _array(name, value, "numbers of shape (n,)")
@@ -144,7 +166,7 @@ def _array(name: str, value: Any, wanted: str) -> NDArray[Any]:
         array = np.asarray(value)
         if array.dtype.kind == "O":
             # Missing values of nullable columns.
-            array = np.where(_is_missing(array), np.nan, array).astype(np.float64)
+            array = np.where(is_missing(array), np.nan, array).astype(np.float64)
     except (TypeError, ValueError) as error:
         got = type(value).__name__
         raise TypeError(f"{name} must be {wanted}, got {got}: {error}") from None
@@ -156,7 +178,12 @@ def _array(name: str, value: Any, wanted: str) -> NDArray[Any]:
     return array
 
 
-def _is_missing(array: NDArray[Any]) -> NDArray[np.bool_]:
-    """Where an array of objects has None, or pandas' NA, which equals nothing, not even itself."""
-    missing = np.frompyfunc(lambda item: item is None or type(item).__name__ == "NAType", 1, 1)
-    return np.asarray(missing(array), bool)
+def is_missing(array: NDArray[Any]) -> NDArray[np.bool_]:
+    """Where an array has None, NaN, NaT, or pandas' NA, which equals nothing, not even itself."""
+    if array.dtype.kind != "O":
+        return np.asarray(array != array, bool)
+    return np.array([_equals_nothing(item) for item in array.flat], bool).reshape(array.shape)
+
+
+def _equals_nothing(item: Any) -> bool:
+    return item is None or type(item).__name__ == "NAType" or bool(item != item)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 import msgspec
 
 from umbmark import _documents
+from umbmark._arguments import real
 from umbmark._documents import Correction
 from umbmark._export import export
 from umbmark._result import Printed, Row
@@ -154,7 +155,9 @@ def calibrate(
     1.0020 0.992
     """
     data = data_of(data)
-    document, text = _calibrate(data, level, heading_arm_m, radius_wheelbase, learn, threads)
+    arm = None if heading_arm_m is None else real("heading_arm_m", heading_arm_m)
+    level = real("level", level)
+    document, text = _calibrate(data, level, arm, radius_wheelbase, learn, threads)
     return Calibration._of(document, robot=data.robot, path=data.path, text=text)
 
 
@@ -219,5 +222,5 @@ def calibrate_gears(data: Data, *, level: float = 0.95) -> GearCalibration:
     >>> umbmark.calibrate_gears(data).drive
     'synchro'
     """
-    document, model, robot = _calibrate_gears(data_of(data), level)
+    document, model, robot = _calibrate_gears(data_of(data), real("level", level))
     return GearCalibration._of(document, model=model, robot=robot)

@@ -10,7 +10,7 @@ import msgspec
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
 from umbmark._result import Printed, Row
-from umbmark._scores import Data, data_of
+from umbmark._scores import Data, a_model, data_of
 from umbmark._umbmark import Model
 
 if TYPE_CHECKING:
@@ -118,9 +118,8 @@ def compare(
     elif not isinstance(models, Mapping):
         models = {f"model {place}": model for place, model in enumerate(models, 1)}
     options = options_of(size, draws, seed)
-    document, text = _umbmark.compare(
-        data_of(data), [*models.items()], options, return_poses, threads
-    )
+    checked = [(name, a_model(model)) for name, model in models.items()]
+    document, text = _umbmark.compare(data_of(data), checked, options, return_poses, threads)
     if msgspec.json.decode(document)["observed"] == "tracks":
         return TrackComparison._of(document, text=text)
     return Comparison._of(document, text=text)

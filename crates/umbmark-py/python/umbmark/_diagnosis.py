@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, ClassVar
 import msgspec
 
 from umbmark import _documents, _umbmark
-from umbmark._arguments import Seed, options_of
+from umbmark._arguments import Seed, names, options_of, real
 from umbmark._explained import Explained
 from umbmark._progress import Bar, Progress
 from umbmark._result import Row
-from umbmark._scores import Data, data_of
+from umbmark._scores import Data, data_of, model_of
 from umbmark._umbmark import Dataset, Model
 from umbmark._unlisted import Unlisted
 
@@ -130,7 +130,9 @@ def diagnose(
     """
     options = options_of(size, draws, seed)
     data = data_of(data)
-    document, text, fitted = _umbmark.diagnose(data, model, options, return_poses, threads)
+    document, text, fitted = _umbmark.diagnose(
+        data, model_of(model), options, return_poses, threads
+    )
     return Diagnosis._of(document, model=fitted, data=data, text=text)
 
 
@@ -138,8 +140,8 @@ def fit(
     data: Data,
     model: Model | None = None,
     *,
-    add: Sequence[str] = (),
-    fix: Sequence[str] | Mapping[str, float] = (),
+    add: str | Sequence[str] = (),
+    fix: str | Sequence[str] | Mapping[str, float] = (),
     level: float = 0.95,
 ) -> Fitted:
     """Fit the free effects of a model to measured runs.
@@ -151,9 +153,9 @@ def fit(
     model : Model, optional
         The model whose free effects are fitted; E_d and E_b, on tracks E_s too, where none is
         given.
-    add : sequence of str
+    add : str or sequence of str
         Effects to add and fit too.
-    fix : sequence of str, or mapping of str to float
+    fix : str, sequence of str, or mapping of str to float
         Parameters of free effects that are not fitted, "floor_slope.drift_y", at the values of the
         model or at those given. The model that is returned keeps them fixed.
     level : float, default 0.95
@@ -174,8 +176,14 @@ def fit(
     ['e_b']
     """
     data = data_of(data)
-    held = [*fix.items()] if isinstance(fix, Mapping) else [(name, None) for name in fix]
-    document, text, fitted = _umbmark.fit(data, model, [*add], held, level)
+    held = (
+        [(name, real(f'fix["{name}"]', value)) for name, value in fix.items()]
+        if isinstance(fix, Mapping)
+        else [(name, None) for name in names("fix", fix)]
+    )
+    document, text, fitted = _umbmark.fit(
+        data, model_of(model), names("add", add), held, real("level", level)
+    )
     return Fitted._of(document, model=fitted, data=data, text=text)
 
 
@@ -220,5 +228,7 @@ def learn(
     """
     data, options = data_of(data), options_of(size, draws, seed)
     with Bar(progress, 1000, "steps") as bar:
-        document, text, learnt = _umbmark.learn(data, model, options, return_poses, threads, bar.at)
+        document, text, learnt = _umbmark.learn(
+            data, model_of(model), options, return_poses, threads, bar.at
+        )
     return Learnt._of(document, model=learnt, data=data, text=text)

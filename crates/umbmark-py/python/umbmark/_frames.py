@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from datetime import UTC, datetime
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from umbmark._arguments import column, poses
+from umbmark._arguments import column, is_missing, poses
 from umbmark._errors import needs
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -24,6 +25,8 @@ def logs(
     pose: Sequence[str] | None,
 ) -> Iterator[Log]:
     """Give the columns of each run of a frame, the runs in the order of their first rows."""
+    if hasattr(frame, "collect") and hasattr(frame, "collect_schema"):
+        raise TypeError("frame is a query that has not been run: pass frame.collect()")
     if hasattr(frame, "__arrow_c_stream__") and not hasattr(frame, "__getitem__"):
         with needs("frames"):
             import pyarrow as pa
@@ -50,19 +53,33 @@ def _get(frame: Any, argument: str, name: str) -> Any:
     except Exception as error:  # polars has an exception of its own
         if "NotFound" not in type(error).__name__:
             raise
+    levels = [*getattr(getattr(frame, "index", None), "names", ())]
+    if name in levels or (name == "index" and levels == [None]):
+        return frame.index.get_level_values(levels.index(name) if name in levels else 0)
     known = frame if isinstance(frame, Mapping) else getattr(frame, "columns", None)
     known = getattr(frame, "column_names", known)
-    has = "" if known is None else f"; it has {', '.join(map(str, known))}"
+    names = [str(of) for of in (*levels, *(() if known is None else known)) if of is not None]
+    has = f"; it has {', '.join(names)}" if names else ""
     raise ValueError(f'there is no column "{name}" in the frame{has}. Say {argument}=...')
 
 
 def _seconds(name: str, values: Any) -> Floats:
-    """Give times in s; dates count from the first one."""
+    """Give times in s; dates count from the first one, whatever their time zone."""
     array = np.asarray(values)
-    if array.dtype.kind == "M":
-        return np.asarray((array - array.min()) / np.timedelta64(1, "s"), np.float64)
-    if array.dtype.kind == "m":
-        return np.asarray(array / np.timedelta64(1, "s"), np.float64)
+    if array.size == 0:
+        return np.empty(0)
+    if array.dtype.kind == "O" and isinstance(array[0], datetime):
+        # Dates with a time zone, for which NumPy has no type. NaT is not equal to itself.
+        unknown = [not isinstance(value, datetime) or value != value for value in array]
+        _refuse(name, np.array(unknown), array, "must be a date, as in the first row")
+        # In one zone, Python subtracts what clocks show, also where they are put forward.
+        times = [value.astimezone(UTC) if value.tzinfo else value for value in array]
+        first = min(times)
+        return np.array([(value - first).total_seconds() for value in times], np.float64)
+    if array.dtype.kind in "mM":
+        _refuse(name, np.isnat(array), array, "must be a time")
+        since = array - array.min() if array.dtype.kind == "M" else array
+        return np.asarray(since / np.timedelta64(1, "s"), np.float64)
     return column(name, values)
 
 
@@ -87,7 +104,7 @@ def _poses(frame: Any, names: Sequence[str] | None, rows: int) -> Floats:
     return poses("pose", np.column_stack(columns))
 
 
-def _refuse(name: str, wrong: NDArray[np.bool_], values: Floats, words: str) -> None:
+def _refuse(name: str, wrong: NDArray[np.bool_], values: NDArray[Any], words: str) -> None:
     """Refuse a value by its column and row."""
     if wrong.any():
         row = int(np.argmax(wrong))
@@ -99,10 +116,12 @@ def _runs(frame: Any, name: str | None, rows: int) -> Iterator[tuple[str, NDArra
     if name is None:
         yield "run_01", np.arange(rows)
         return
-    labels, first, of_row = np.unique(
-        np.asarray(_get(frame, "run", name)), return_index=True, return_inverse=True
-    )
-    if len(of_row) != rows:
-        raise ValueError(f"{name} must have as many rows as the times, got {len(of_row)}")
+    given = np.asarray(_get(frame, "run", name))
+    if len(given) != rows:
+        raise ValueError(f"{name} must have as many rows as the times, got {len(given)}")
+    _refuse(name, is_missing(given), given, "must name the run of its row")
+    if given.dtype.kind == "O":
+        given = given.astype(str)
+    labels, first, of_row = np.unique(given, return_index=True, return_inverse=True)
     for place in np.argsort(first):
         yield str(labels[place]), np.flatnonzero(of_row == place)

@@ -18,6 +18,8 @@ def keys_of(parameters: Parameters, correlations: Correlations | None) -> str | 
         if correlations:
             raise ValueError("correlations of a file's parameters stand in the file")
         return fspath(parameters)
+    if isinstance(parameters, Mapping) or not all(isinstance(one, Mapping) for one in parameters):
+        raise TypeError(f"parameters must be a file, or a list of its tables, got {parameters!r}")
     keys: dict[str, Any] = {"parameter": [dict(one) for one in parameters]}
     if correlations:
         keys["correlation"] = [

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from umbmark import _documents, _umbmark
-from umbmark._arguments import Seed, options_of, whole
+from umbmark._arguments import Seed, by_name, indices, options_of, real, whole
 from umbmark._progress import Bar, Progress
 from umbmark._result import Printed, Row
 from umbmark._scores import Data, data_of
@@ -15,6 +15,9 @@ from umbmark._umbmark import Dataset, Model, Path
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+# As many as the core counts.
+MOST_RUNS = (1 << 32) - 1
 
 
 class Plan(_documents.Plan, Printed, frozen=True):
@@ -63,6 +66,8 @@ def _first(row: _documents.OfRuns) -> tuple[_documents.LeastSize, ...]:
 
 
 class Separation(_documents.Separation, Printed, frozen=True):
+    """Experiments that separate two effects, the most informative per minute first."""
+
     text: str
 
     def table(self) -> list[Row]:
@@ -164,16 +169,17 @@ def plan(
     >>> print(found.sheet().splitlines()[0])
     # UMBmark test sheet: TRC LabMate
     """
-    sizes = [(name, float(value)) for name, value in (see or {}).items()]
+    asked = by_name("see", {} if see is None else see, "sizes")
+    sizes = [(name, real(f'see["{name}"]', value)) for name, value in asked]
     options = options_of(size, draws, seed)
     whose = _Whose(_read(data), model, path, sigma_m, with_heading, options[2])
     with Bar(progress, 1000, "steps") as bar:
         document, text, markdown, html = _umbmark.plan(
             whose,
-            whole("runs", runs, 0, (1 << 32) - 1),
+            whole("runs", runs, 0, MOST_RUNS),
             sizes,
-            power,
-            [*numbers],
+            real("power", power),
+            [whole("numbers", number, 0, MOST_RUNS) for number in indices("numbers", numbers)],
             order,
             options,
             threads,
@@ -224,7 +230,7 @@ def separate(
     options = options_of(0.05, 999, seed)
     whose = _Whose(_read(data), model, path, sigma_m, with_heading, options[2])
     document, text = _umbmark.separate(
-        (first, second), whose, whole("runs", runs, 0, (1 << 32) - 1), options, threads
+        (first, second), whose, whole("runs", runs, 0, MOST_RUNS), options, threads
     )
     return Separation._of(document, text=text)
 

@@ -25,6 +25,11 @@ class Bar:
 
     def __init__(self, progress: Progress, total: int, unit: str) -> None:
         """Begin with nothing done."""
+        if not (progress is None or isinstance(progress, bool) or callable(progress)):
+            raise TypeError(
+                "progress must be True, False or a function of the steps done and of all,"
+                f" got {progress!r} ({type(progress).__name__})"
+            )
         self._total = total
         self._unit = unit
         self._done = 0

@@ -5,12 +5,12 @@ from __future__ import annotations
 import logging
 from collections.abc import Sequence
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, TypeGuard, overload
 
 from umbmark import _documents
-from umbmark._arguments import Numbers
+from umbmark._arguments import Numbers, real
 from umbmark._result import Printed, Row
-from umbmark._umbmark import Dataset, load_dataset, score_arrays, score_dataset
+from umbmark._umbmark import Dataset, Model, load_dataset, score_arrays, score_dataset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,10 +27,28 @@ def data_of(data: Data) -> Dataset:
     """
     if isinstance(data, Dataset):
         return data
+    if not _are_places(data):
+        raise TypeError(
+            "data must be a Dataset, its place, or several places, got"
+            f" {data!r:.60} ({type(data).__name__}); Dataset.from_arrays and from_frame make one"
+        )
     read = load_dataset(data)
     for warning in read.warnings:
         log.warning("%s: %s", ", ".join(places_of(data)), warning)
     return read
+
+
+def model_of(model: Model | None) -> Model | None:
+    """Give a model, checked; None where none is given."""
+    return None if model is None else a_model(model)
+
+
+def a_model(model: Any) -> Model:
+    """Give a model, checked."""
+    if isinstance(model, Model):
+        return model
+    got = type(model).__name__
+    raise TypeError(f"model must be a Model, got {model!r:.60} ({got}); Model.read reads a file")
 
 
 def places_of(data: Data) -> list[str]:
@@ -38,6 +56,13 @@ def places_of(data: Data) -> list[str]:
     if isinstance(data, Dataset):
         return []
     return [fspath(data)] if isinstance(data, str | PathLike) else [fspath(place) for place in data]
+
+
+def _are_places(data: Any) -> TypeGuard[str | PathLike[str] | Sequence[str | PathLike[str]]]:
+    """Whether it is a place, or several: numbers are not."""
+    if isinstance(data, Sequence) and not isinstance(data, str):
+        return bool(data) and all(isinstance(place, str | PathLike) for place in data)
+    return isinstance(data, str | PathLike)
 
 
 class Score(_documents.Score, Printed, frozen=True):
@@ -123,12 +148,13 @@ def score(
     Parameters
     ----------
     cw : Dataset, path-like, or array of numbers, shape (n, 3) or (n, 2)
-        A dataset or its place. Or the return errors of the clockwise runs, one row per run: x in
-        m, y in m, heading in rad, each absolute minus computed (Eq. 1), in the frame of START,
-        headings counter-clockwise positive. A heading that is NaN, or a missing third column, was
-        not measured. Without any run of a direction, shape (0, 3), the other direction's centroid
-        is still given. Sequences, NumPy arrays of any real type, and frames of pandas, polars and
-        Arrow with these columns are such arrays; C-contiguous float64 is read where it lies.
+        A dataset, its place, or several places. Or the return errors of the clockwise runs, one row
+        per run: x in m, y in m, heading in rad, each absolute minus computed (Eq. 1), in the frame
+        of START, headings counter-clockwise positive. A heading that is NaN, or a missing third
+        column, was not measured. Without any run of a direction, shape (0, 3), the other
+        direction's centroid is still given. Sequences, NumPy arrays of any real type, and frames of
+        pandas, polars and Arrow with these columns are such arrays; C-contiguous float64 is read
+        where it lies.
     ccw : array of numbers, shape (n, 3) or (n, 2)
         The same of the counter-clockwise runs, where ``cw`` is an array.
     bumps_cw, bumps_ccw : array of numbers, shape (n, 3) or (n, 2), optional
@@ -147,7 +173,7 @@ def score(
     Raises
     ------
     TypeError
-        If an argument has no numbers, or is masked.
+        If an argument has no numbers, or is masked, or there are arrays beside a dataset.
     ValueError
         If an array has another shape, a position is not finite, a heading is infinite, the level
         does not lie between 0 and 1, there is no run at all, or a file cannot be read.
@@ -165,7 +191,15 @@ def score(
     >>> print(f"by the runs' scatter alone it would stay below {result.noise_band_m:.3f} m")
     by the runs' scatter alone it would stay below 0.023 m
     """
-    if isinstance(cw, Dataset | str | PathLike):
+    level = real("level", level)
+    if isinstance(cw, Dataset) or _are_places(cw):
+        beside = {"ccw": ccw, "bumps_cw": bumps_cw, "bumps_ccw": bumps_ccw}
+        given = [name for name, value in beside.items() if value is not None]
+        if given:
+            raise TypeError(
+                f"{given[0]} goes with return errors in arrays, but the first argument is a"
+                f" dataset, which holds all of its runs, got {type(cw).__name__}"
+            )
         document, text = score_dataset(data_of(cw), level, convention)
     else:
         document, text = score_arrays(cw, ccw, bumps_cw, bumps_ccw, level, convention)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from os import PathLike
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from umbmark import _documents, _umbmark
-from umbmark._arguments import Seed
+from umbmark._arguments import Seed, by_name, integer, real
 from umbmark._errors import needs
 from umbmark._progress import Bar, Progress
 from umbmark._result import Printed, Row
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 
 class Sweep(_documents.Sweep, Printed, frozen=True):
+    """A study on every point of a grid."""
+
     _of_row: ClassVar[tuple[str, ...]] = ("mean", "std_error", "std_dev", "q*")
     text: str
 
@@ -71,6 +73,16 @@ class Sweep(_documents.Sweep, Printed, frozen=True):
         from umbmark import _plots
 
         return _plots.sweep(self, ax, metric)
+
+
+def _axis(name: str, axis: Any) -> tuple[str, float, float, int]:
+    """Give the name, the ends and the number of values of what is swept."""
+    try:
+        first, last, count = axis
+    except (TypeError, ValueError):
+        raise TypeError(f'axes["{name}"] must be (first, last, count), got {axis!r}') from None
+    ends = (real(f'first of axes["{name}"]', first), real(f'last of axes["{name}"]', last))
+    return name, *ends, integer(f'count of axes["{name}"]', count)
 
 
 def sweep(
@@ -126,9 +138,7 @@ def sweep(
     study = Study(
         model, path, n=n, runs=runs, seed=seed, odometry=odometry, update=update, phase=phase
     )
-    given = [
-        (name, float(first), float(last), count) for name, (first, last, count) in axes.items()
-    ]
+    given = [_axis(name, axis) for name, axis in by_name("axes", axes, "(first, last, count)")]
     points = math.prod(count for *_, count in given)
     with Bar(progress, points, "points") as bar:
         written = None if checkpoint is None else (checkpoint, resume, replace)

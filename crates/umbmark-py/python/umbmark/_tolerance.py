@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from umbmark import _documents, _umbmark
-from umbmark._arguments import Seed
+from umbmark._arguments import Seed, real, whole
 from umbmark._parameters import Correlations, Parameters, keys_of
 from umbmark._progress import Bar, Progress
 from umbmark._result import Printed, Row
@@ -137,8 +137,10 @@ def tolerance(
         phase=phase,
     )
     keys = keys_of(parameters, correlations)
+    wanted = (real("target", target), real("share", share))
+    robots = whole("robots", robots, 0, (1 << 32) - 1)
     with Bar(progress, 1000, "steps") as bar:
         document, text, sizes = _umbmark.tolerance(
-            study, keys, metric, (target, share), robots, with_noise, threads, bar.at
+            study, keys, metric, wanted, robots, with_noise, threads, bar.at
         )
     return Tolerance._of(document, sizes=sizes, text=text)
