@@ -1,6 +1,9 @@
 """Corrected odometry, against arcs and variances worked out in NumPy."""
 
+import pickle
+
 import numpy as np
+import pyarrow as pa
 import pytest
 import umbmark
 
@@ -83,6 +86,42 @@ def test_covariance_grows_as_the_noise_of_the_model_says() -> None:
     )
     np.testing.assert_allclose(corrected.covariance[-1], expected, rtol=2e-3, atol=1e-12)
     assert np.all(np.linalg.eigvalsh(corrected.covariance[1:]) > 0.0)
+
+
+def test_corrected_runs_are_a_sequence_that_compares_by_value_and_one_frame() -> None:
+    noisy = umbmark.Model.from_toml(umbmark.Model().to_toml() + NOISE)
+    data = umbmark.simulate(noisy, runs=(1, 1), seed=5)
+    corrected = umbmark.apply(data, noisy)
+    assert isinstance(corrected, umbmark.CorrectedRuns)
+    assert isinstance(corrected[:1], umbmark.CorrectedRuns)
+    again = pickle.loads(pickle.dumps(corrected))
+    assert again == corrected == umbmark.apply(data, noisy)
+    assert hash(again) == hash(corrected)
+    assert corrected[0] != corrected[1]
+    assert corrected != umbmark.apply(data, noisy, start=(1.0, 0.0, 0.0))
+    assert corrected != [*corrected]
+    samples = sum(len(run.time_s) for run in corrected)
+    assert repr(corrected) == f"CorrectedRuns(2 runs, {samples} samples)"
+    frame = corrected.to_pandas()
+    assert len(frame) == samples == len(corrected.to_polars()) == pa.table(corrected).num_rows
+    one = frame[frame.run == corrected[1].run]
+    covariance = corrected[1].covariance
+    assert covariance is not None
+    np.testing.assert_array_equal(one.t_s, corrected[1].time_s)
+    np.testing.assert_array_equal(one.theta_rad, corrected[1].pose[:, 2])
+    np.testing.assert_array_equal(one.cov_y_theta_m_rad, covariance[:, 1, 2])
+    assert [*umbmark.apply(data, umbmark.Model()).to_pandas()] == [*frame][:5]
+
+
+def test_the_frame_has_the_columns_of_the_files_of_the_command() -> None:
+    """Those of `crates/umbmark-io/src/corrected.rs`, which users read side by side."""
+    noisy = umbmark.Model.from_toml(umbmark.Model().to_toml() + NOISE)
+    frame = umbmark.apply(umbmark.simulate(noisy, runs=(1, 0)), noisy).to_polars()
+    written = (
+        "t_s,x_m,y_m,theta_rad,"
+        "var_x_m2,cov_x_y_m2,var_y_m2,cov_x_theta_m_rad,cov_y_theta_m_rad,var_theta_rad2"
+    )
+    assert frame.columns == ["run", *written.split(",")]
 
 
 def test_what_cannot_be_corrected_is_refused(model: umbmark.Model) -> None:

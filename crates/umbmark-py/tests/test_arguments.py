@@ -297,3 +297,119 @@ def test_a_learnt_model_says_what_speaks_against_it() -> None:
     assert learnt.model.doubt is not None
     assert learnt.model.doubt.startswith("No model explains these runs: ")
     assert umbmark.solve(data, draws=99).model.doubt == learnt.model.doubt
+
+
+def test_one_name_is_a_name_and_not_its_letters() -> None:
+    data = umbmark.simulate(NOISE, runs=3, reference_rate_hz=0)
+    one = umbmark.fit(data, add="floor_slope", fix="floor_slope.drift_y")
+    assert one == umbmark.fit(data, add=["floor_slope"], fix=["floor_slope.drift_y"])
+    parameters = [e.parameter for e in one.fitted if e.effect == "floor_slope"]
+    assert "drift_x" in parameters
+    assert "drift_y" not in parameters
+
+
+WRONG: dict[str, tuple[Callable[[umbmark.Dataset], object], str]] = {
+    "add": (
+        lambda data: umbmark.fit(data, add=[3]),  # type: ignore[list-item]
+        "add must be names, got 3 (int)",
+    ),
+    "add, no sequence": (
+        lambda data: umbmark.fit(data, add=3),  # type: ignore[arg-type]
+        "add must be names, got 3 (int)",
+    ),
+    "fix": (
+        lambda data: umbmark.fit(data, fix={"wheelbase.e_b": "one"}),  # type: ignore[dict-item]
+        """fix["wheelbase.e_b"] must be a number, got 'one' (str)""",
+    ),
+    "axes": (
+        lambda _: umbmark.sweep(NOISE, "ed"),  # type: ignore[arg-type]
+        "axes must be a mapping of names to (first, last, count), got 'ed' (str)",
+    ),
+    "values": (
+        lambda _: umbmark.sweep(NOISE, {"ed": np.linspace(0.9, 1.1, 5)}),  # type: ignore[dict-item]
+        'axes["ed"] must be (first, last, count), got array(',
+    ),
+    "count": (
+        lambda _: umbmark.sweep(NOISE, {"ed": (0.9, 1.1, 2.5)}),  # type: ignore[dict-item]
+        'count of axes["ed"] must be a whole number, got 2.5 (float)',
+    ),
+    "end": (
+        lambda _: umbmark.sweep(NOISE, {"ed": ("low", 1.1, 3)}),  # type: ignore[dict-item]
+        """first of axes["ed"] must be a number, got 'low' (str)""",
+    ),
+    "see": (
+        lambda _: umbmark.plan(see="eb"),  # type: ignore[arg-type]
+        "see must be a mapping of names to sizes, got 'eb' (str)",
+    ),
+    "numbers": (
+        lambda _: umbmark.plan(numbers=5),  # type: ignore[arg-type]
+        "numbers must be numbers of shape (n,), got 5 (int)",
+    ),
+    "parameters": (
+        lambda _: umbmark.tolerance({"name": "eb"}),  # type: ignore[arg-type]
+        "parameters must be a file, or a list of its tables, got {'name': 'eb'}",
+    ),
+    "level": (
+        lambda data: umbmark.fit(data, level="x"),  # type: ignore[arg-type]
+        "level must be a number, got 'x' (str)",
+    ),
+    "level of a score": (
+        lambda data: umbmark.score(data, level="x"),  # type: ignore[call-overload]
+        "level must be a number, got 'x' (str)",
+    ),
+    "heading_arm_m": (
+        lambda data: umbmark.calibrate(data, heading_arm_m="x"),  # type: ignore[arg-type]
+        "heading_arm_m must be a number, got 'x' (str)",
+    ),
+    "size": (
+        lambda data: umbmark.conditions(data, size="x"),  # type: ignore[arg-type]
+        "size must be a number, got 'x' (str)",
+    ),
+    "power": (
+        lambda _: umbmark.plan(power="x"),  # type: ignore[arg-type]
+        "power must be a number, got 'x' (str)",
+    ),
+    "target": (
+        lambda _: umbmark.tolerance([], target="x"),  # type: ignore[arg-type]
+        "target must be a number, got 'x' (str)",
+    ),
+    "data": (
+        lambda _: umbmark.fit(CW),  # type: ignore[arg-type]
+        "(ndarray); Dataset.from_arrays and from_frame make one",
+    ),
+    "no data": (
+        lambda _: umbmark.fit([]),
+        "data must be a Dataset, its place, or several places, got [] (list)",
+    ),
+    "model": (
+        lambda data: umbmark.fit(data, "model.toml"),  # type: ignore[arg-type]
+        "model must be a Model, got 'model.toml' (str); Model.read reads a file",
+    ),
+    "models": (
+        lambda data: umbmark.compare(data, {"mine": "model.toml"}),  # type: ignore[dict-item]
+        "model must be a Model, got 'model.toml' (str); Model.read reads a file",
+    ),
+    "robots": (
+        lambda data: umbmark.survey(data),  # type: ignore[arg-type]
+        "robots must be a mapping or a sequence of data, got Dataset",
+    ),
+    "progress": (
+        lambda data: umbmark.learn(data, progress="yes"),  # type: ignore[arg-type]
+        "progress must be True, False or a function of the steps done and of all, got 'yes' (str)",
+    ),
+}
+
+
+@pytest.mark.parametrize("argument", WRONG)
+def test_what_is_of_the_wrong_kind_is_refused_by_the_name_of_the_argument(argument: str) -> None:
+    call, words = WRONG[argument]
+    data = umbmark.simulate(NOISE, runs=2, reference_rate_hz=0)
+    with pytest.raises(TypeError, match=re.escape(words)):
+        call(data)
+
+
+def test_a_number_that_is_out_of_range_is_refused_by_the_name_of_the_argument() -> None:
+    with pytest.raises(ValueError, match="numbers must be between 0 and"):
+        umbmark.plan(numbers=[-1])
+    with pytest.raises(ValueError, match="robots must be between 0 and"):
+        umbmark.tolerance([], robots=-3)

@@ -1,5 +1,6 @@
 """Many robots by one call: what one call after the other gives, and one frame of all."""
 
+import pickle
 import subprocess
 import sys
 from collections.abc import Callable
@@ -131,6 +132,14 @@ def test_progress_counts_robots(robots: dict[str, umbmark.Dataset]) -> None:
     heard: list[tuple[int, int]] = []
     umbmark.each(umbmark.score, robots, progress=lambda *at: heard.append(at))
     assert heard == [(1, 3), (2, 3), (3, 3)]
+
+
+def test_what_was_found_compares_by_value(robots: dict[str, umbmark.Dataset]) -> None:
+    found = umbmark.each(umbmark.score, robots)
+    assert found == umbmark.each(umbmark.score, robots)
+    assert pickle.loads(pickle.dumps(found)) == found
+    assert found != umbmark.each(umbmark.score, robots, level=0.9)
+    assert found != umbmark.each(umbmark.score, {**robots, "none": "there is no such place"})
 
 
 def test_a_single_robot_is_not_many(robots: dict[str, umbmark.Dataset]) -> None:

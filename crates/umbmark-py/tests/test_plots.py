@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 import umbmark
 from matplotlib import colors, pyplot
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.patches import Rectangle
 from umbmark import _panels
 
 PATH = umbmark.Path(side_m=1.0)
@@ -162,6 +164,82 @@ def test_a_missing_effect_outside_the_catalogue_is_drawn_with_its_band() -> None
     suggestion = unlisted.suggestion
     assert suggestion is not None
     assert suggestion.effect[-1]["name"] in found.model.add(suggestion).effects
+
+
+def dots(ax: Axes) -> np.ndarray:
+    """Give the places of the points that have intervals."""
+    return np.array(
+        [np.asarray(line.get_xydata())[0] for line in ax.lines if line.get_marker() == "o"]
+    )
+
+
+def test_what_changed_is_drawn_in_standard_errors() -> None:
+    before = umbmark.simulate(TRUTH, PATH, reference_rate_hz=0, seed=7)
+    after = umbmark.simulate(TRUTH.add("wheelbase", e_b=1.03), PATH, reference_rate_hz=0, seed=8)
+    found = umbmark.changed(before, after, draws=99)
+    rows = [*found.robot, *found.reference]
+    ax = found.plot()
+    assert [label.get_text() for label in ax.get_yticklabels()] == [row.key for row in rows]
+    for (x, y), row in zip(dots(ax), rows, strict=True):
+        error = np.hypot(row.before_standard_error, row.after_standard_error)
+        change = np.log(row.change) if row.of == "scatter" else row.change
+        assert (x, rows[int(y)].key) == (pytest.approx(change / error), row.key)
+        # A 95 % interval of few runs holds zero where |t| is small, and does not where it is large.
+        assert not (row.changed and abs(x) < 1.96)
+    marked = [line.get_color() for line in ax.lines if line.get_marker() == "o"]
+    assert marked == ["tab:red" if row.changed else "tab:blue" for row in rows]
+    assert "tab:red" in marked
+
+
+def test_numbers_under_conditions_are_drawn_by_their_p() -> None:
+    tile = umbmark.simulate(TRUTH, PATH, reference_rate_hz=0, seed=1)
+    felt = umbmark.simulate(TRUTH.add("wheelbase", e_b=1.03), PATH, reference_rate_hz=0, seed=2)
+    cw, ccw = ([*tile.returns(way), *felt.returns(way)] for way in ("cw", "ccw"))
+    data = umbmark.Dataset.from_arrays(cw, ccw, robot=tile.robot, path=PATH)
+    found = umbmark.conditions(data.with_conditions(floor=(["tile"] * 5 + ["felt"] * 5) * 2))
+    ax = found.plot()
+    names = [label.get_text() for label in ax.get_yticklabels()]
+    assert names == [f"{asked.key} by floor" for asked in found.asked]
+    heights = [bar.get_width() for bar in ax.patches if isinstance(bar, Rectangle)]
+    told = [min(6.0, -np.log10(asked.p_adjusted)) for asked in found.asked]
+    np.testing.assert_allclose(heights, told)
+
+
+def test_robots_of_a_kind_are_drawn_beside_each_other() -> None:
+    draw = np.random.default_rng(1)
+    cw = draw.normal([-0.20, -0.21, -0.05], 0.01, (60, 5, 3))
+    ccw = draw.normal([0.01, 0.00, 0.01], 0.01, (60, 5, 3))
+    cw[3] += (0.4, 0.4, 0.2)
+    fleet = umbmark.fleet(cw, ccw, robot=umbmark.Model().robot, path=umbmark.Path.umbmark())
+    few = umbmark.survey({name: fleet[name] for name in [*fleet][:12]}, diagnosis=False)
+    ax = few.plot()
+    assert ax.get_xlabel() == "wheel_diameter_ratio.e_d"
+    assert [label.get_text() for label in ax.get_yticklabels()] == [*fleet][:12]
+    np.testing.assert_array_equal(dots(ax)[:, 0], [one.fitted[0].value for one in few.robots])
+    marked = [line.get_color() for line in ax.lines if line.get_marker() == "o"]
+    key = "wheel_diameter_ratio.e_d"
+    apart = [key in {one.key for one in robot.stands_out} for robot in few.robots]
+    assert marked == ["tab:red" if out else "tab:blue" for out in apart]
+    assert few.plot(number="wheelbase.e_b").get_xlabel() == "wheelbase.e_b"
+    with pytest.raises(ValueError, match=r'no number "e_b"; there are wheel_diameter_ratio\.e_d, '):
+        few.plot(number="e_b")
+    many = umbmark.survey(fleet, diagnosis=False).plot()
+    assert sum(bar.get_height() for bar in many.patches[:40] if isinstance(bar, Rectangle)) == 60
+
+
+def test_a_robot_under_watch_is_drawn_run_by_run_beside_the_limits() -> None:
+    draw = np.random.default_rng(3)
+    cw, ccw = (draw.normal(0.0, (0.02, 0.02, 0.01), (15, 3)) for _ in range(2))
+    robot, path = umbmark.Robot.labmate(), umbmark.Path.square(4.0)
+    found = umbmark.watch(umbmark.Dataset.from_arrays(cw, ccw, robot=robot, path=path))
+    ax = found.plot()
+    assert ax.get_title() == "no change"
+    numbers, limit = (np.asarray(line.get_ydata(), float) for line in ax.lines[:2])
+    told = np.array([run.numbers for run in found.runs], float)
+    np.testing.assert_array_equal(numbers, told)
+    compared = np.isfinite(numbers)
+    assert compared.any()
+    assert (numbers[compared] <= limit[compared]).all()
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ def data() -> umbmark.Dataset:
 
 def rows(result: Any) -> list[dict[str, str]]:
     """Return the cells of the table that a notebook shows, by the titles of their columns."""
-    page = result._repr_html_()
+    page = result._repr_html_().split("</table>")[0]
     titles = re.findall("<th>(.*?)</th>", page)
     cells = [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(.*?)</tr>", page)[1:]]
     return [dict(zip(titles, row, strict=True)) for row in cells]
@@ -82,6 +82,12 @@ RESULTS: dict[str, Callable[[umbmark.Dataset], Any]] = {
     "solve": lambda data: umbmark.solve(data, draws=99),
     "inspect": umbmark.inspect,
     "monte_carlo": lambda _: umbmark.monte_carlo(MODEL, PATH, n=50),
+    "changed": lambda data: umbmark.changed(data, data, draws=99),
+    "conditions": lambda data: umbmark.conditions(
+        data.with_conditions(floor=["tile", "felt"] * (len(data) // 2))
+    ),
+    "survey": lambda data: umbmark.survey({"a": data, "b": data}, diagnosis=False),
+    "watch": umbmark.watch,
     "plan": lambda _: umbmark.plan(see={"eb": 1.005}, draws=99, numbers=[5]),
 }
 
@@ -96,6 +102,32 @@ def test_a_result_is_shown_with_a_small_figure(name: str, data: umbmark.Dataset)
     assert b"<svg" in base64.b64decode(drawn)
     assert result._repr_html_() == page
     assert pyplot.get_fignums() == []
+
+
+def test_tracks_are_shown_by_the_residuals_of_each_run() -> None:
+    tracks = umbmark.tracks(umbmark.simulate(MODEL, PATH, runs=2, reference_rate_hz=2))
+    shown = rows(tracks)
+    assert [row["run"] for row in shown] == [track.run for track in tracks]
+    for row, track in zip(shown, tracks, strict=True):
+        rms = np.sqrt(np.mean(track.residual**2, axis=0))
+        assert float(row["rms [mm]"]) == pytest.approx(1e3 * np.hypot(*rms[:2]), rel=1e-4)
+        assert float(row["rms [deg]"]) == pytest.approx(np.degrees(rms[2]), rel=1e-4)
+
+
+def test_many_robots_are_shown_in_one_table_in_the_units_of_each(data: umbmark.Dataset) -> None:
+    """The names of robots, which are a user's, are neither units nor HTML."""
+    robots: dict[str, umbmark.Dataset | str] = {
+        "sigma_m": data,
+        "<b>": data,
+        "lost": "there is no such place",
+    }
+    found = umbmark.each(umbmark.score, robots)
+    page = found._repr_html_()
+    assert "there is no such place" in page
+    assert "<b>" not in page
+    shown, alone = rows(found), rows(found["sigma_m"])
+    assert [row.pop("robot") for row in shown[: len(alone)]] == ["sigma_m"] * len(alone)
+    assert shown[: len(alone)] == alone
 
 
 def test_without_matplotlib_and_where_nothing_can_be_drawn_there_is_no_figure(

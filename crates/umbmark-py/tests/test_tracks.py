@@ -125,6 +125,18 @@ def test_tracks_are_a_sequence_and_one_frame(fitted: umbmark.Fitted) -> None:
     assert repr(tracks) == words
 
 
+def test_tracks_compare_by_value(data: umbmark.Dataset, fitted: umbmark.Fitted) -> None:
+    tracks = fitted.tracks()
+    again = pickle.loads(pickle.dumps(tracks))
+    assert again == tracks == fitted.tracks()
+    assert hash(again) == hash(tracks)
+    assert hash(again[0]) == hash(tracks[0])
+    assert tracks[0] == again[0] != tracks[1]
+    assert tracks != umbmark.tracks(data)
+    assert tracks != tracks[1:]
+    assert tracks != [*tracks]
+
+
 def test_headings_that_were_not_measured_stay_unknown(data: umbmark.Dataset) -> None:
     runs = [
         umbmark.Run(

@@ -38,7 +38,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 import logging
 
 from umbmark import results
-from umbmark._apply import Corrected, apply
+from umbmark._apply import Corrected, CorrectedRuns, apply
 from umbmark._arguments import Numbers, Seed
 from umbmark._calibration import Calibration, GearCalibration, calibrate, calibrate_gears
 from umbmark._changed import Changed, changed
@@ -107,6 +107,7 @@ __all__ = [
     "Conditions",
     "ConversionWarning",
     "Corrected",
+    "CorrectedRuns",
     "Correction",
     "DataError",
     "Dataset",

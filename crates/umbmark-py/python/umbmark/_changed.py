@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
 from umbmark._progress import Bar, Progress
 from umbmark._result import Printed, Row
-from umbmark._scores import Data, data_of
+from umbmark._scores import Data, data_of, model_of
 from umbmark._umbmark import Model
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 class Changed(_documents.Changed, Printed, frozen=True):
@@ -19,6 +24,12 @@ class Changed(_documents.Changed, Printed, frozen=True):
         """Give the numbers of the robot and of the reference, one dict a row."""
         keys = ("key", "of", "before", "after", "change", "p_adjusted", "changed", "seen")
         return [{key: getattr(row, key) for key in keys} for row in (*self.robot, *self.reference)]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw each change in standard errors, with its interval, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.changed(self, ax)
 
 
 def changed(
@@ -72,6 +83,6 @@ def changed(
     options = options_of(size, draws, seed)
     with Bar(progress, 1000, "steps") as bar:
         document, text = _umbmark.changed(
-            first, second, model, options, return_poses, threads, bar.at
+            first, second, model_of(model), options, return_poses, threads, bar.at
         )
     return Changed._of(document, text=text)

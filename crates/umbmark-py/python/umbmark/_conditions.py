@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from umbmark import _documents, _umbmark
+from umbmark._arguments import real
 from umbmark._progress import Bar, Progress
 from umbmark._result import Printed, Row
-from umbmark._scores import Data, data_of
+from umbmark._scores import Data, data_of, model_of
 from umbmark._umbmark import Model
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 class Conditions(_documents.Conditions, Printed, frozen=True):
@@ -30,6 +36,12 @@ class Conditions(_documents.Conditions, Printed, frozen=True):
             for asked in self.asked
             for at in asked.levels
         ]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the p of every number under every condition, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.conditions(self, ax)
 
 
 def conditions(
@@ -81,7 +93,7 @@ def conditions(
     >>> [number.key for number in found.numbers if number.depends_on]
     ['wheelbase.e_b']
     """
-    loaded = data_of(data)
+    loaded, model, size = data_of(data), model_of(model), real("size", size)
     with Bar(progress, 1000, "steps") as bar:
         document, text = _umbmark.conditions(loaded, model, size, return_poses, threads, bar.at)
     return Conditions._of(document, text=text)

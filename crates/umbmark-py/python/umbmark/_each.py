@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from umbmark._arguments import Numbers, whole
 from umbmark._executor import MOST_WORKERS, Executor, in_order
 from umbmark._progress import Bar, Progress
-from umbmark._result import Frame, Result, Row, arrow_of
+from umbmark._result import Frame, Result, Row, arrow_of, html_table
 from umbmark._scores import Data
 from umbmark._umbmark import Dataset, Path, Robot
 
@@ -113,6 +113,14 @@ class Each(Mapping[str, Found], Frame, Generic[Found]):
     def __len__(self) -> int:
         return len(self._found)
 
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Each):
+            return (self._found, self.failed) == (other._found, other.failed)
+        return NotImplemented
+
+    # What failed can be changed.
+    __hash__ = None  # type: ignore[assignment]
+
     def table(self) -> list[Row]:
         """Give the tables of all results one below the other, with the name of the robot."""
         rows = [{"robot": name} | row for name, result in self.items() for row in result.table()]
@@ -123,6 +131,19 @@ class Each(Mapping[str, Found], Frame, Generic[Found]):
         """Give its ``table`` as an Arrow table."""
         first = next(iter(self.values()), None)
         return arrow_of(self.table(), {} if first is None else first._kinds())
+
+    def _repr_html_(self) -> str:
+        """Give its ``table`` with lengths in mm and angles in deg, and what failed."""
+        first = next(iter(self.values()), None)
+
+        def cells(row: Row) -> list[str]:
+            # A robot may be called what a column is.
+            rest = {key: value for key, value in row.items() if key != "robot"}
+            return [row["robot"], *(() if first is None else first._cells(rest))]
+
+        failed = [{"robot": name, "failed": why} for name, why in self.failed.items()]
+        page = html_table(repr(self), self.table(), cells)
+        return page + (html_table("failed", failed) if failed else "")
 
     def __repr__(self) -> str:
         first = next(iter(self.values()), None)
@@ -183,11 +204,7 @@ def each(
     >>> found.to_pandas()["robot"].unique().tolist()
     ['cart 1', 'cart 2']
     """
-    if isinstance(robots, str | Dataset) or not isinstance(robots, Mapping | Sequence):
-        got = type(robots).__name__
-        raise TypeError(f"robots must be a mapping or a sequence of data, got {got}")
-    if not isinstance(robots, Mapping):
-        robots = {str(place): data for place, data in enumerate(robots, 1)}
+    robots = named(robots)
     if workers is not None:
         workers = whole("workers", workers, 1, MOST_WORKERS)
     if "threads" in inspect.signature(call).parameters:
@@ -207,6 +224,16 @@ def each(
                 found[name] = result
             bar.at(len(found) + len(failed))
     return Each(found, failed)
+
+
+def named(robots: Mapping[str, Data] | Sequence[Data]) -> Mapping[str, Data]:
+    """Give the data of robots by name; in a sequence they are called "1", "2", ..."""
+    if isinstance(robots, str | Dataset) or not isinstance(robots, Mapping | Sequence):
+        got = type(robots).__name__
+        raise TypeError(f"robots must be a mapping or a sequence of data, got {got}")
+    if isinstance(robots, Mapping):
+        return robots
+    return {str(place): data for place, data in enumerate(robots, 1)}
 
 
 def _told(

@@ -19,6 +19,8 @@ Pose = tuple[float, float, float]
 
 
 class Paper(_documents.Paper, frozen=True):
+    """The paper's experiments; those that were not requested are left out."""
+
     _of_row: ClassVar[tuple[str, ...]] = ("value", "low", "high", "published")
 
     def table(self) -> list[Row]:

@@ -12,8 +12,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from umbmark._calibration import Calibration, GearCalibration
+    from umbmark._changed import Changed
     from umbmark._comparison import Comparison, TrackComparison
+    from umbmark._conditions import Conditions
     from umbmark._diagnosis import Diagnosis, Fitted, Learnt
+    from umbmark._documents import Estimate
     from umbmark._inspection import Inspection
     from umbmark._monte_carlo import MonteCarlo
     from umbmark._paper import Paper
@@ -21,14 +24,18 @@ if TYPE_CHECKING:
     from umbmark._scores import Score
     from umbmark._sensitivity import Sensitivity
     from umbmark._solution import Solution
+    from umbmark._survey import Survey
     from umbmark._sweep import Sweep
     from umbmark._tolerance import Tolerance
     from umbmark._umbmark import Dataset
     from umbmark._unlisted import Unlisted
+    from umbmark._watch import Watched
 
 COLOURS = {"cw": "tab:blue", "ccw": "tab:orange"}
 MARKS = {"cw": "o", "ccw": "s"}
 MM = 1e3
+# As many robots have a line each.
+MOST_NAMES = 50
 
 
 def _axes(ax: Axes | None, names: int = 0) -> Axes:
@@ -369,5 +376,95 @@ def paper(result: Paper, ax: Axes | None, quantity: str | None) -> Axes:
     ax.set_yticks(places, [f"{row['experiment']}: {row['what']}" for row in rows])
     ax.invert_yaxis()
     ax.set(xlabel=f"{wanted.rsplit('_', 1)[0]} [{unit}]")
+    ax.legend()
+    return ax
+
+
+def changed(result: Changed, ax: Axes | None) -> Axes:
+    """Draw how far each number moved, in standard errors of the change, with its interval."""
+    rows = [*result.robot, *result.reference]
+    ax = _axes(ax, len(rows))
+    for place, row in enumerate(rows):
+        values = np.array([row.change, *(row.interval or (np.nan, np.nan))])
+        if row.of == "scatter":
+            # A factor, whose errors are those of its logarithm.
+            values = np.log(values)
+        error = np.hypot(row.before_standard_error, row.after_standard_error)
+        change, low, high = values / error if error > 0 else np.full(3, np.nan)
+        colour = "tab:red" if row.changed else "tab:blue"
+        ax.errorbar(
+            change, place, xerr=[[change - low], [high - change]], fmt="o", color=colour, capsize=3
+        )
+    ax.set_yticks(range(len(rows)), [row.key for row in rows])
+    ax.invert_yaxis()
+    ax.axvline(0, color="grey", linewidth=0.8)
+    ax.set_xlabel("after against before [standard errors]")
+    return ax
+
+
+def conditions(result: Conditions, ax: Axes | None) -> Axes:
+    """Draw p of every number under every condition."""
+    ax = _axes(ax, len(result.asked))
+    names = [f"{asked.key} by {asked.condition}" for asked in result.asked]
+    _small_p(ax, names, [asked.p_adjusted for asked in result.asked], result.size)
+    return ax
+
+
+def survey(result: Survey, ax: Axes | None, number: str | None) -> Axes:
+    """Draw a number of every robot with its interval, and how far the robots are apart.
+
+    A histogram of many robots.
+    """
+    told: dict[str, dict[str, Estimate]] = {}
+    for robot in result.robots:
+        for one in robot.fitted:
+            told.setdefault(f"{one.effect}.{one.parameter}", {})[robot.robot] = one
+    if not told:
+        raise ValueError("no number was found of any robot")
+    number = number or next(iter(told))
+    if number not in told:
+        raise ValueError(f'there is no number "{number}"; there are {", ".join(told)}')
+    apart = {robot.robot for robot in result.robots if number in {s.key for s in robot.stands_out}}
+    named = len(told[number]) <= MOST_NAMES
+    ax = _axes(ax, len(told[number]) if named else 0)
+    if named:
+        for place, (name, one) in enumerate(told[number].items()):
+            low, high = one.interval or (np.nan, np.nan)
+            colour = "tab:red" if name in apart else "tab:blue"
+            ends = [[one.value - low], [high - one.value]]
+            ax.errorbar(one.value, place, xerr=ends, fmt="o", color=colour, capsize=3)
+        ax.set_yticks(range(len(told[number])), [*told[number]])
+        ax.invert_yaxis()
+    else:
+        ax.hist([one.value for one in told[number].values()], bins=40, alpha=0.6)
+        ax.set_ylabel("robots")
+    for among in (among for among in result.among if among.key == number):
+        spread = f"robots apart by {among.sd_between:.2g} (1 sd)"
+        low, high = among.mean - among.sd_between, among.mean + among.sd_between
+        ax.axvspan(low, high, color="grey", alpha=0.25, label=spread)
+        ax.axvline(among.mean, color="grey", linewidth=0.8)
+        ax.legend()
+    ax.ticklabel_format(axis="x", useOffset=False)
+    ax.set_xlabel(number)
+    return ax
+
+
+def watched(result: Watched, ax: Axes | None) -> Axes:
+    """Draw the likelihood ratios of changes over the runs, each with its limit."""
+    ax = _axes(ax)
+    at = np.arange(1, len(result.runs) + 1)
+    for kind, colour in (
+        ("numbers", "tab:blue"),
+        ("place", "tab:orange"),
+        ("scatter", "tab:green"),
+    ):
+        height, limit = (
+            np.array([getattr(run, key) for run in result.runs], float)
+            for key in (kind, f"{kind}_limit")
+        )
+        ax.plot(at, height, "o-", color=colour, markersize=3, label=kind)
+        ax.plot(at, limit, "--", color=colour, linewidth=0.8)
+    ax.set(xlabel="run", ylabel="log likelihood ratio of a change (dashed: limit)")
+    ax.set_title("changed" if result.changed else "no change")
     ax.legend()
     return ax

@@ -7,7 +7,7 @@ import inspect
 import math
 import re
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
@@ -53,6 +53,22 @@ class Frame:
             import polars as pl
 
         return pl.DataFrame(self.to_arrow())
+
+
+class ByValue:
+    """A frozen dataclass with arrays: it compares by value, where NaN is equal to NaN."""
+
+    __slots__ = ()
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(_same(value, getattr(other, key)) for key, value in vars(self).items())
+
+    def __hash__(self) -> int:
+        # Arrays can be written to; their shapes stay.
+        values = (getattr(value, "shape", value) for value in vars(self).values())
+        return hash((type(self).__name__, *values))
 
 
 class Printed:
@@ -197,14 +213,29 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
         words = [html.escape(word) for word in said if isinstance(word, str)]
         verdict = [f"<p><b>{words[0].replace('_', ' ')}</b></p>"] if said[0] else []
         sentences = [f"<p>{word}</p>" for word in words[len(verdict) :]]
-        rows = self.table()
-        head = "".join(f"<th>{html.escape(_title(key))}</th>" for key in (rows[0] if rows else ()))
-        body = "".join(
-            "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in self._cells(row)) + "</tr>"
-            for row in rows
-        )
-        table = f"<table><caption>{type(self).__name__}</caption><tr>{head}</tr>{body}</table>"
+        table = html_table(type(self).__name__, self.table(), self._cells)
         return "".join([*verdict, *sentences, table, small(self)])
+
+
+def html_table(
+    caption: str, rows: Sequence[Row], cells: Callable[[Row], list[str]] | None = None
+) -> str:
+    """Give rows as a table of HTML, lengths in mm and angles in deg.
+
+    ``cells`` gives the cells of a row, where the names of the columns do not say all units.
+    """
+    if cells is None:
+        cells = _by_column
+    head = "".join(f"<th>{html.escape(_title(key))}</th>" for key in (rows[0] if rows else ()))
+    body = "".join(
+        "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells(row)) + "</tr>"
+        for row in rows
+    )
+    return f"<table><caption>{html.escape(caption)}</caption><tr>{head}</tr>{body}</table>"
+
+
+def _by_column(row: Row) -> list[str]:
+    return [_cell(value, _unit(key)[2] or 1.0) for key, value in row.items()]
 
 
 def arrow_of(rows: list[Row], kinds: Mapping[str, str]) -> pa.Table:

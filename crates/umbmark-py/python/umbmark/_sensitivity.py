@@ -19,6 +19,8 @@ EFFORT = {"sobol": 4096, "morris": 100, "local": 1000}
 
 
 class Sensitivity(_documents.Sensitivity, Printed, frozen=True):
+    """Which parameter drives which metric."""
+
     text: str
 
     def table(self) -> list[Row]:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
+from umbmark._each import named
 from umbmark._progress import Bar, Progress
 from umbmark._result import Printed, Row
 from umbmark._scores import Data, data_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 class Survey(_documents.Survey, Printed, frozen=True):
@@ -32,6 +37,15 @@ class Survey(_documents.Survey, Printed, frozen=True):
             row["stands_out"] = ", ".join(one.key for one in robot.stands_out)
             rows.append(row)
         return rows
+
+    def plot(self, ax: Axes | None = None, *, number: str | None = None) -> Axes:
+        """Draw a number of every robot, and how far they are apart, on new axes or ``ax``.
+
+        The first number where none is named; ``among`` has their keys.
+        """
+        from umbmark import _plots
+
+        return _plots.survey(self, ax, number)
 
 
 def survey(
@@ -80,9 +94,7 @@ def survey(
     >>> len(found.robots), [one.key for one in found.among]
     (20, ['wheel_diameter_ratio.e_d', 'wheelbase.e_b'])
     """
-    if not isinstance(robots, Mapping):
-        robots = {str(place): data for place, data in enumerate(robots, 1)}
-    loaded = [(name, data_of(data)) for name, data in robots.items()]
+    loaded = [(name, data_of(data)) for name, data in named(robots).items()]
     options = options_of(size, draws, seed)
     with Bar(progress, 1000, "steps") as bar:
         document, text = _umbmark.survey(loaded, diagnosis, options, return_poses, threads, bar.at)

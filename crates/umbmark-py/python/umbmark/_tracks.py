@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from umbmark import _umbmark
 from umbmark._errors import needs
-from umbmark._result import Frame
-from umbmark._scores import Data, data_of
+from umbmark._result import ByValue, Frame, html_table
+from umbmark._scores import Data, data_of, model_of
 from umbmark._umbmark import Model
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ COLUMNS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class Track(ByValue):
     """One measured run beside its odometry and a model, at the m poses that the reference measured.
 
     All poses are rows of x in m, y in m and heading in rad, in the frame of START.
@@ -73,7 +73,7 @@ class Track:
 class Tracks(Sequence[Track], Frame):
     """Measured runs beside their odometry and a model: a sequence of ``Track``, and one frame.
 
-    It hands its frame, one row a pose, to whatever reads Arrow.
+    It hands its frame, one row a pose, to whatever reads Arrow. Tracks compare by value.
     """
 
     def __init__(self, tracks: Sequence[Track]) -> None:
@@ -91,6 +91,12 @@ class Tracks(Sequence[Track], Frame):
         if isinstance(place, slice):
             return Tracks(self._tracks[place])
         return self._tracks[place]
+
+    def __eq__(self, other: object) -> bool:
+        return self._tracks == other._tracks if isinstance(other, Tracks) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._tracks)
 
     def __len__(self) -> int:
         return len(self._tracks)
@@ -155,6 +161,21 @@ class Tracks(Sequence[Track], Frame):
                 columns |= dict(zip(titles, self._all(name).T, strict=True))
         return pa.table(columns)
 
+    def _repr_html_(self) -> str:
+        """Give the root mean square of the residuals of each run, in mm and deg."""
+        told = ((track, Tracks([track])) for track in self)
+        rows = [
+            {
+                "run": track.run,
+                "direction": track.direction,
+                "poses": alone.poses,
+                "rms_m": alone.rms_m,
+                "rms_rad": None if np.isnan(alone.rms_rad) else alone.rms_rad,
+            }
+            for track, alone in told
+        ]
+        return html_table(repr(self), rows)
+
     def __repr__(self) -> str:
         return f"Tracks({len(self)} runs, {self.poses} poses, {1e3 * self.rms_m:.2f} mm rms)"
 
@@ -191,9 +212,7 @@ def tracks(data: Data, model: Model | None = None) -> Tracks:
     True
     """
     read = data_of(data)
-    if model is None:
-        model = Model(read.robot)
-    found = _umbmark.tracks(read, model)
+    found = _umbmark.tracks(read, model_of(model) or Model(read.robot))
     if not found:
         raise ValueError(
             "no run has wheel counts and absolute poses at three or more places: tracks need both"

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from os import PathLike, fspath
+from typing import TYPE_CHECKING
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, integer, real, seed_of
 from umbmark._result import Printed, Row
 from umbmark._scores import Data, data_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 class Watched(_documents.Watched, Printed, frozen=True):
@@ -21,6 +25,12 @@ class Watched(_documents.Watched, Printed, frozen=True):
         heights = [key for kind in kinds for key in (kind, f"{kind}_limit")]
         keys = ("run", "direction", "used", "outlying", "p", *heights)
         return [{key: getattr(run, key) for key in keys} for run in self.runs]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the likelihood ratios of changes over the runs, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.watched(self, ax)
 
 
 def watch(
