@@ -4,6 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import umbmark
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
@@ -21,6 +22,22 @@ def made() -> umbmark.Dataset:
     return umbmark.simulate(model, path, runs=(3, 3), reference_rate_hz=5, seed=np.int64(4))
 
 
+def log_of(data: umbmark.Dataset) -> pd.DataFrame:
+    """Return logs as a logger hands them over: dated rows, NaN where no pose was measured."""
+    parts: list[pd.DataFrame] = []
+    for run in data:
+        assert run.time_s is not None
+        assert run.reference_sample is not None
+        assert run.reference_pose is not None
+        pose = np.full((len(run.time_s), 3), np.nan)
+        pose[run.reference_sample] = run.reference_pose
+        stamps = pd.Timestamp("2026-05-01T10:00", tz="UTC") + pd.to_timedelta(run.time_s, unit="s")
+        columns = {"left": run.ticks_left, "right": run.ticks_right, "drive": run.name}
+        part = pd.DataFrame({"stamp": stamps, **columns})
+        parts.append(part.assign(x=pose[:, 0], y=pose[:, 1], yaw=pose[:, 2]))
+    return pd.concat(parts).set_index("stamp")
+
+
 def rms_of_each_run(tracks: umbmark.Tracks) -> dict[str, float]:
     """Return the root mean square of the residuals of each run in m."""
     squares: dict[str, NDArray[np.float64]] = {
@@ -35,7 +52,16 @@ def worst(learnt: umbmark.Learnt) -> umbmark.results.Step:
 
 
 def test_a_script_of_a_user_runs_and_is_typed(tmp_path: Path) -> None:
-    data = made()
+    simulated = made()
+    data = umbmark.Dataset.from_frame(
+        log_of(simulated),
+        robot=simulated.robot,
+        path=simulated.path,
+        run="drive",
+        t="stamp",
+        ticks=("left", "right"),
+        pose=("x", "y", "yaw"),
+    )
     score: umbmark.Score = umbmark.score(data.returns("cw"), data.returns("ccw"))
     low, high = score.e_max_sys_interval_m or (0.0, 0.0)
     assert low < high
@@ -49,6 +75,13 @@ def test_a_script_of_a_user_runs_and_is_typed(tmp_path: Path) -> None:
     model: umbmark.Model = learnt.model
     if learnt.unlisted is not None and learnt.unlisted.suggestion is not None:
         model = model.add(learnt.unlisted.suggestion)
+    fixed: umbmark.Fitted = umbmark.fit(data, model, fix={"wheelbase.e_b": 1.01})
+    covariance: NDArray[np.float64] = fixed.covariance
+    assert covariance.shape == (len(fixed.fitted), len(fixed.fitted))
+    corrected = umbmark.apply(data, model)
+    ends: NDArray[np.float64] = np.array([run.pose[-1] for run in corrected])
+    last = corrected.to_pandas().groupby("run", sort=False)["x_m"].last()
+    np.testing.assert_array_equal(last.to_numpy(), ends[:, 0])
     text: str = umbmark.export(model, to="toml", force=True).text
     (tmp_path / "robot.toml").write_text(text)
     with ThreadPoolExecutor(2) as executor:
