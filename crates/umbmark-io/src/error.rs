@@ -101,6 +101,9 @@ pub enum DatasetError {
         /// Why, and what to do.
         reason: String,
     },
+    /// No place was given to read.
+    #[error("no dataset is named; give at least one folder or file")]
+    NoPlace,
     /// A place that is given more than once.
     #[error("{file}: is given twice; its runs would count twice")]
     Twice {

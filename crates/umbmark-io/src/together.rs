@@ -30,8 +30,11 @@ fn together<P: AsRef<Path>>(
     Ok(Dataset::joined(sets.collect::<Result<_, DatasetError>>()?)?)
 }
 
-/// A name for each place.
+/// A name for each place, of which there must be one.
 pub(super) fn names(places: &[&Path]) -> Result<Vec<String>, DatasetError> {
+    if places.is_empty() {
+        return Err(DatasetError::NoPlace);
+    }
     let parts: Vec<Vec<String>> = places.iter().map(|place| parts(place)).collect();
     let longest = parts.iter().map(Vec::len).max().unwrap_or(0);
     let by = |count: usize| parts.iter().map(move |parts| parts[parts.len().saturating_sub(count)..].join("/"));
@@ -60,6 +63,12 @@ fn parts(place: &Path) -> Vec<String> {
 mod tests {
     use super::*;
     use std::fs;
+
+    #[test]
+    fn no_place_is_an_error_and_no_panic() {
+        let said = load_together::<&Path>(&[], &Topics::default()).unwrap_err().to_string();
+        assert_eq!(said, "no dataset is named; give at least one folder or file");
+    }
 
     #[test]
     fn each_place_is_called_by_as_much_of_its_path_as_makes_it_differ() {
