@@ -194,6 +194,22 @@ def test_a_filter_that_two_runs_cannot_certify_is_a_reason_for_doubt(tmp_path: F
     )
 
 
+def test_a_true_model_is_not_compared_beside_a_clock_that_the_drive_hardly_shows(
+    tmp_path: File,
+) -> None:
+    # The motion alone says 0.64 s late and 1800 ppm slow, which carries whole runs 21 mm away.
+    write(make("no_heading", 9202, []), tmp_path)
+    truth = json.loads((tmp_path / "truth.json").read_text())
+    values = {"wheel_diameter_ratio": "e_d", "scale": "e_s"}
+    model = tmp_path / "model.toml"
+    effects = (f'[[effect]]\nname = "{name}"\n{e} = {truth[e]}\n' for name, e in values.items())
+    model.write_text("\n".join(effects))
+    words = [str(COMMAND), "compare", str(tmp_path), "--model", str(model), "--json"]
+    compared = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
+    assert compared["models"][0]["taken"] == []
+    assert compared["models"][0]["along"]["rmse_m"] < 0.001
+
+
 def test_turns_on_the_spot_show_the_wheelbase_beside_a_scale_that_is_kept(tmp_path: File) -> None:
     # Counts of 1.4 mm make ways that the robot does not drive: E_s would be 0.2, and E_b with it.
     write(make("spins", 9101, []), tmp_path)
