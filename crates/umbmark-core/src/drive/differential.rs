@@ -81,6 +81,17 @@ impl DifferentialDrive {
 
 const BOTH_WHEELS: &[&str] = &["wheel_diameter_left_m", "wheel_diameter_right_m"];
 
+/// Both diameters as one number.
+pub(super) const ONE_DIAMETER: Spelling =
+    Spelling { parameter: DifferentialDrive::WHEEL_DIAMETER, of: BOTH_WHEELS, factor: 1.0 };
+
+/// The same as a radius.
+pub(super) const ONE_RADIUS: Spelling = Spelling {
+    parameter: Parameter::shape("wheel_radius_m", "", "m", 0.075, (5e-4, 5.0), "radius of both wheels"),
+    of: BOTH_WHEELS,
+    factor: 2.0,
+};
+
 impl Kinematics for DifferentialDrive {
     const NAME: &'static str = "differential";
 
@@ -103,12 +114,8 @@ impl Kinematics for DifferentialDrive {
             of: &["wheelbase_m"],
             factor: 1.0,
         },
-        Spelling { parameter: Self::WHEEL_DIAMETER, of: BOTH_WHEELS, factor: 1.0 },
-        Spelling {
-            parameter: Parameter::shape("wheel_radius_m", "", "m", 0.075, (5e-4, 5.0), "radius of both wheels"),
-            of: BOTH_WHEELS,
-            factor: 2.0,
-        },
+        ONE_DIAMETER,
+        ONE_RADIUS,
     ];
 
     const HAS_AXLE_WHEELS: bool = true;

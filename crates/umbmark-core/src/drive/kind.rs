@@ -175,7 +175,7 @@ impl DriveKinds {
     /// Every drive.
     pub const ALL: DriveKinds = DriveKinds((1 << DriveKind::ALL.len()) - 1);
 
-    /// Those whose two sides have wheels ahead of which nothing steers.
+    /// Two wheels, or two rows of wheels, that do not steer: the robot turns by the difference of their speeds.
     pub const DIFFERENTIAL: DriveKinds = DriveKinds::of(DriveKind::Differential).and(DriveKind::SkidSteer);
 
     /// One kind.

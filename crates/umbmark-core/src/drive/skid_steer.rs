@@ -1,5 +1,6 @@
 //! Skid-steer drive: fixed wheels or a track on each side, which are driven together and slip sideways in turns.
 
+use super::differential::{ONE_DIAMETER, ONE_RADIUS};
 use super::kinematics::{Kinematics, Spelling};
 use super::{DifferentialDrive, DriveError};
 use crate::parameter::Parameter;
@@ -35,8 +36,6 @@ impl SkidSteerDrive {
         Ok(SkidSteerDrive { track_width, multiplier, axle })
     }
 }
-
-const BOTH_SIDES: &[&str] = &["wheel_diameter_left_m", "wheel_diameter_right_m"];
 
 impl Kinematics for SkidSteerDrive {
     const NAME: &'static str = "skid_steer";
@@ -76,12 +75,8 @@ impl Kinematics for SkidSteerDrive {
             of: &["track_width_m"],
             factor: 1.0,
         },
-        Spelling { parameter: DifferentialDrive::WHEEL_DIAMETER, of: BOTH_SIDES, factor: 1.0 },
-        Spelling {
-            parameter: Parameter::shape("wheel_radius_m", "", "m", 0.075, (5e-4, 5.0), "radius of all wheels"),
-            of: BOTH_SIDES,
-            factor: 2.0,
-        },
+        ONE_DIAMETER,
+        ONE_RADIUS,
     ];
 
     const HAS_AXLE_WHEELS: bool = true;
