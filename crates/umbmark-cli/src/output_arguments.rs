@@ -45,8 +45,10 @@ impl OutputArguments {
     pub fn write(&self, data: &Dataset) -> Result<Vec<String>, DatasetError> {
         let existing = if self.force { Existing::Replace } else { Existing::Keep };
         if is_standard_output(&self.output) {
-            let (file, reason) =
-                (self.output.display().to_string(), "a dataset is a folder, and standard output is none".into());
+            let (file, reason) = (
+                self.output.display().to_string(),
+                "a dataset is a folder, and standard output cannot hold one".into(),
+            );
             return Err(DatasetError::Unwritable { file, reason });
         }
         self.layout().write(data, &self.output, existing)

@@ -22,6 +22,7 @@ mod open;
 mod paper;
 mod plan;
 mod python_classes;
+mod python_keys;
 mod report;
 mod returns;
 mod robot_numbers;

@@ -68,7 +68,10 @@ fn a_file_on_standard_output_stands_there_alone() {
     let model = umbmark(tape.path(), &["fit", ".", "--add", "wheel_diameter_ratio", "-o", "-"]);
     assert!(model.status.success() && text(&model.stdout).contains("[[effect]]"), "{model:?}");
     let refused = umbmark(tape.path(), &["convert", ".", "-o", "-"]);
-    assert!(!refused.status.success() && text(&refused.stderr).contains("standard output is none"), "{refused:?}");
+    assert!(
+        !refused.status.success() && text(&refused.stderr).contains("standard output cannot hold one"),
+        "{refused:?}"
+    );
 }
 
 #[test]

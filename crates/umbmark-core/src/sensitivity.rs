@@ -95,7 +95,7 @@ pub enum SensitivityError {
         value: u64,
     },
     /// An output that is no number.
-    #[error("output {output} is no number at {values:?}")]
+    #[error("output {output} is not a number at {values:?}")]
     NotANumber {
         /// Which output, from 0.
         output: usize,

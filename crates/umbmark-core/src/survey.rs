@@ -30,7 +30,7 @@ use std::fmt::Display;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// At most one robot in so many stands out.
-const MOST: usize = 4;
+const ROBOTS_PER_OUTLIER: usize = 4;
 /// Fewer robots do not show how far they are apart.
 pub const FEWEST: usize = 3;
 
@@ -193,7 +193,7 @@ fn farthest(rows: &[Row], wanted: Number) -> Vec<(usize, f64)> {
     let mut left: Vec<(usize, f64, f64)> =
         shown.iter().map(|(place, own)| (*place, own.value, error(*place))).collect();
     let mut found = Vec::new();
-    for _ in 0..(shown.len() / MOST).max(1) {
+    for _ in 0..(shown.len() / ROBOTS_PER_OUTLIER).max(1) {
         let robots = left.len() as f64;
         let values: Vec<f64> = left.iter().map(|(_, value, _)| *value).collect();
         let errors: Vec<f64> = left.iter().map(|(.., error)| *error).collect();

@@ -49,25 +49,33 @@ impl RobotFile {
             (reference.transpose()?.unwrap_or_default(), columns.transpose()?.unwrap_or_default());
         Ok(RobotFile { robot, path, reference, columns })
     }
+
+    /// The keys that `[robot]` may have for a kind of drive.
+    pub fn keys(kind: DriveKind) -> Vec<String> {
+        let of_wiring =
+            if kind.moves_sideways() { vec![] } else { [&[EXCHANGED.to_owned()], &backward_keys(kind)[..]].concat() };
+        let of_drive = kind.parameters().iter().chain(kind.spellings().iter().map(|spelling| &spelling.parameter));
+        let numbers = of_drive.chain([&Encoder::TICKS, &Encoder::RATE, &Encoder::BITS]).map(|p| p.name.to_owned());
+        ["name", "drive"].map(str::to_owned).into_iter().chain(of_wiring).chain(numbers).collect()
+    }
+}
+
+/// Keys that say of each counter whether it counts backward.
+fn backward_keys(kind: DriveKind) -> [String; 2] {
+    kind.counters().map(|counter| format!("{counter}_counts_backward"))
 }
 
 /// The table of a robot.
 pub(super) fn read_robot_table(table: &Table) -> Result<Robot, DatasetError> {
     let kind = table.get("drive").map_or_else(|| Ok(DriveKind::default()), |drive| read_kind(&drive))?;
-    let backward = kind.counters().map(|counter| format!("{counter}_counts_backward"));
-    let mut keys = vec!["name", "drive"];
-    if !kind.moves_sideways() {
-        keys.extend([EXCHANGED, &backward[0], &backward[1]]);
-    }
-    keys.extend(kind.parameters().iter().map(|p| p.name));
-    keys.extend(kind.spellings().iter().map(|spelling| spelling.parameter.name));
-    keys.extend([Encoder::TICKS, Encoder::RATE, Encoder::BITS].map(|p| p.name));
-    table.only(&keys)?;
+    let keys = RobotFile::keys(kind);
+    table.only(&keys.iter().map(String::as_str).collect::<Vec<_>>())?;
     let name = table.get("name").map(|entry| entry.word("text")).transpose()?.unwrap_or("robot");
     let values = kind.parameters().iter().map(|p| read_number(table, kind, p)).collect::<Result<Vec<f64>, _>>()?;
     let drive = Drive::from_values(kind, &values);
     let flag = |key: &str| table.get(key).map_or(Ok(false), |entry| entry.flag());
-    let wiring = Wiring { exchanged: flag(EXCHANGED)?, backward: [flag(&backward[0])?, flag(&backward[1])?] };
+    let [left, right] = backward_keys(kind);
+    let wiring = Wiring { exchanged: flag(EXCHANGED)?, backward: [flag(&left)?, flag(&right)?] };
     let encoder = Encoder::new(table.number(&Encoder::TICKS)?, read_rate(table)?, read_bits(table)?);
     match (drive, encoder) {
         (Ok(drive), Ok(encoder)) => Ok(Robot { name: name.to_owned(), drive, encoder: encoder.wired(wiring) }),

@@ -15,7 +15,7 @@ import pytest
 import umbmark
 from umbmark._result import Record, Result
 
-SIDE = 1.0
+SIDE = 0.5
 
 
 class Part(Record, frozen=True):

@@ -13,7 +13,7 @@ use umbmark_core::result::{self, NoiseFree, Told};
 use crate::bench::Trouble;
 
 /// Tests at most.
-const MOST: u64 = 100_000;
+const MAX_TRIALS: u64 = 100_000;
 
 /// What is simulated.
 #[derive(Clone, Debug, Deserialize)]
@@ -48,8 +48,8 @@ impl Asked {
             model.set(effect, parameter, value).map_err(Trouble::because)?;
         }
         let path = Path::new(&SQUARE, &[self.side], Path::umbmark().speed).map_err(Trouble::because)?;
-        if self.trials > MOST {
-            return Err(Trouble(format!("At most {MOST} tests are drawn.")));
+        if self.trials > MAX_TRIALS {
+            return Err(Trouble(format!("At most {MAX_TRIALS} tests are drawn.")));
         }
         Ok(Study { path, runs: [self.runs; 2], ..Study::new(model, self.trials, self.seed) })
     }

@@ -12,7 +12,7 @@ use umbmark_io::Existing;
 use crate::bench::Trouble;
 
 /// Rows at most.
-const MOST: usize = 1000;
+const MAX_ROWS: usize = 1000;
 
 /// A robot, its square and its returns, as they are typed.
 #[derive(Clone, Debug, Deserialize)]
@@ -75,11 +75,11 @@ impl Typed {
                 Err(says) => wrong("plate", row, 1, says),
             }
         }
-        if self.rows.len() > MOST {
-            wrong("rows", MOST, 0, format!("more than {MOST} rows are not taken"));
+        if self.rows.len() > MAX_ROWS {
+            wrong("rows", MAX_ROWS, 0, format!("more than {MAX_ROWS} rows are not taken"));
         }
         let (mut runs, mut counts) = (Vec::new(), [0, 0]);
-        for (row, cells) in self.rows.iter().take(MOST).enumerate() {
+        for (row, cells) in self.rows.iter().take(MAX_ROWS).enumerate() {
             if cells[1..].iter().all(|cell| cell.trim().is_empty()) {
                 continue;
             }

@@ -5,10 +5,11 @@
 //! | data | [`evidence::tracks`](crate::evidence::tracks) | fits the model to the tracks, and the noise of its residuals |
 //! | columns | `responses`, `smooth` | replays the tracks once for each size of each effect: a linear model around the fit |
 //! | whiten | `examination` | makes the residuals and columns independent; all tests follow from their products |
-//! | test | `significance`, `flips` | F of every effect and smooth, Bonferroni-corrected; sign flips of whole runs |
+//! | test | `finding`, `significance`, `flips` | F of every effect and smooth, Bonferroni-corrected; sign flips of whole runs |
 //! | class | `class` | which effects look the same in these runs |
 //! | search | `search`, `missing`, `growth`, `needless`, `repeats` | adds what is certified to the model, and tests again |
-//! | words | `conclusion`, `left`, `dependence`, `experiments` | the verdict, the doubts, and what to drive next |
+//! | doubt | `doubts`, `chance`, `odd`, `unequal`, `varying`, `wander`, `unconfirmed` | what speaks against the model: what repeats, runs and numbers that differ, headings that wander |
+//! | words | `conclusion`, `left`, `dependence`, `curve`, `suggestion`, `experiments` | the verdict, what the error depends on, and what to drive next |
 //!
 //! An effect is certified as missing where three things hold: its F is significant (Bonferroni-corrected), by the noise model and
 //! by the scatter between runs; its score is significant under sign flips of whole runs, which need no noise model; and held-out

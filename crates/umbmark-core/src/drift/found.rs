@@ -24,7 +24,7 @@ pub const CONFIDENCE: f64 = 0.95;
 const TOLD_APART: f64 = 0.01;
 
 /// Numbers account for a change if they account for this share of its square, whatever the rest is: large changes are not linear.
-const MOST: f64 = 0.8;
+const ENOUGH: f64 = 0.8;
 
 /// A value with its interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -448,7 +448,7 @@ impl Numbers {
             }
         });
         let alone = alone(&delta, &of_change, sides.freedom, quantile)?;
-        let accounts = p_left.is_none_or(|p| p >= TOLD_APART) || unexplained < (1.0 - MOST) * whole;
+        let accounts = p_left.is_none_or(|p| p >= TOLD_APART) || unexplained < (1.0 - ENOUGH) * whole;
         Some(Numbers { moved: moved.collect(), alone, p_left, accounts })
     }
 }

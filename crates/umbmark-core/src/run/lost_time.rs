@@ -13,7 +13,7 @@ const REST: f64 = 0.3;
 /// No move is shorter than this \[s\].
 const SHORTEST: f64 = 0.6;
 /// A part of a run did not take longer, as a share, than this.
-const MOST: f64 = 1.0;
+const MAX_DEPARTURE: f64 = 1.0;
 
 /// What a robot does in a row.
 #[derive(Clone, Copy, PartialEq)]
@@ -58,7 +58,7 @@ impl TickLog {
             .map(|(rows, poses)| (poses[1] - poses[0]) / (rows[1] - rows[0]))
             .collect();
         let whole = 1.0 + self.clock_excess;
-        if slopes.iter().any(|slope| !((slope * whole - 1.0).abs() < MOST)) {
+        if slopes.iter().any(|slope| !((slope * whole - 1.0).abs() < MAX_DEPARTURE)) {
             return false;
         }
         let mut part = 0;

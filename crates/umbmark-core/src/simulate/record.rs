@@ -104,7 +104,7 @@ impl Simulator {
         Ok(recording)
     }
 
-    /// Refuses rates that are none, and robots whose counters are not two.
+    /// Refuses rates that are not positive, and robots that steer by trucks, whose counters are more than two.
     fn check_recordable(&self, [rate, reference_rate]: [f64; 2]) -> Result<(), SimulateError> {
         for (what, value) in [("sampling rate", rate), ("reference rate", reference_rate)] {
             if !(value > 0.0 && value.is_finite()) {

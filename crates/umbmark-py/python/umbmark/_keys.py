@@ -1,4 +1,7 @@
-"""The keys that robots, paths and effects take, for static checks: those of the files."""
+"""The keys that robots, paths and effects take, for static checks: written from the core's.
+
+``SNAPSHOTS=overwrite cargo test -p umbmark-cli --test all python_keys`` writes them anew.
+"""
 
 from __future__ import annotations
 
@@ -110,14 +113,14 @@ EffectName: TypeAlias = Literal[
 ]
 ActsOn: TypeAlias = Literal[
     "heading_per_metre",
+    "forward_scale",
+    "turn_scale",
     "sideways_per_metre",
     "forward_per_radian",
     "sideways_per_radian",
     "heading_per_second",
     "forward_per_second",
     "sideways_per_second",
-    "forward_scale",
-    "turn_scale",
     "left_wheel_scale",
     "right_wheel_scale",
 ]
@@ -222,6 +225,7 @@ class EffectKeys(TypedDict, total=False):
     sine_rad_per_m: Drawn
     angle_rad: Drawn
     rad_per_m_s2: Drawn
+    ahead_m: Drawn
     s_per_m: Drawn
     s_per_rad: Drawn
     difference: Drawn
@@ -255,6 +259,5 @@ class EffectKeys(TypedDict, total=False):
     centre_x_m: Drawn
     centre_y_m: Drawn
     headings: Drawn
-    ahead_m: Drawn
     along_m_per_m: Drawn
     diagonal_m_per_m: Drawn

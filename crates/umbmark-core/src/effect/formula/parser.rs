@@ -165,7 +165,7 @@ impl<'a> Parser<'a> {
         let column = column(self.text, span.start);
         match parameter.or_else(variable).or_else(number) {
             Some(_) if self.peek() == Token::Sign('(') => {
-                Err(self.wrong_call(&span, "is no function; write * to multiply".into()))
+                Err(self.wrong_call(&span, "is not a function; write * to multiply".into()))
             }
             Some(op) => self.push(op, span),
             None => {

@@ -369,7 +369,7 @@ fn what_cannot_be_meant_is_refused_with_its_column() {
         ("k * min(heading)", "column 5: \"min\" takes 2 arguments, got 1"),
         ("k * sin()", "column 5: \"sin\" takes 1 argument, got 0"),
         ("k * sin(1, 2)", "column 5: \"sin\" takes 1 argument, got 2"),
-        ("k(2)", "column 1: \"k\" is no function; write * to multiply"),
+        ("k(2)", "column 1: \"k\" is not a function; write * to multiply"),
         ("heading", "the parameter k does not occur in the formula; take it away"),
     ] {
         let error = Formula::new("own", Target::ForwardScale, text, &["k"]).unwrap_err().to_string();
