@@ -65,6 +65,8 @@ class Page:
     def __init__(self, browser: webdriver.Chrome, server: Server, width: int = 1280) -> None:
         self.browser = browser
         size(browser, width)
+        # A page that is open still asks its server, which may be gone.
+        browser.get("about:blank")
         complaints(browser)
         browser.get(server.address)
         self.wait("return document.body.dataset.ready === '1'")
