@@ -2,6 +2,7 @@
 
 import json
 import subprocess
+import tomllib
 from pathlib import Path as File
 
 import pytest
@@ -9,8 +10,8 @@ from files import write
 from make import make
 from test_gyro import COMMAND, needs_command
 
-TRACK_WIDTH_M = 0.0644
-"""Between the sides; the wheels of the world are 0.1094 m times E_b apart."""
+MULTIPLIER = 1.8
+"""Wheels of the world are so many times as far apart as the sides that are entered, times E_b."""
 
 
 def command(*words: str | File) -> str:
@@ -27,15 +28,18 @@ def test_the_multiplier_of_a_skid_steered_robot_is_learnt_from_its_log(
     data, model = tmp_path / "data", tmp_path / "model.toml"
     write(make("null", 9600, ["runs=2", "run_s=40"]), data)
     truth = json.loads((data / "truth.json").read_text())
+    robot = tomllib.loads((data / "robot.toml").read_text())["robot"]
+    track_width_m = robot["wheelbase_m"] / MULTIPLIER
     (data / "robot.toml").write_text(
-        f'[robot]\ndrive = "skid_steer"\ntrack_width_m = {TRACK_WIDTH_M}\n'
+        f'[robot]\ndrive = "skid_steer"\ntrack_width_m = {track_width_m}\n'
         f"wheel_separation_multiplier = {entered}\n"
-        "wheel_diameter_m = 0.057\nticks_per_revolution = 24279\n"
+        f"wheel_diameter_m = {robot['wheel_diameter_m']}\n"
+        f"ticks_per_revolution = {robot['ticks_per_revolution']}\n"
     )
     answer = json.loads(command("solve", data, "-o", model, "--json"))
     assert answer["verdict"] == "explained"
     found = answer["correction"]["wheel_separation_multiplier"]
-    true = 0.1094 * truth["e_b"] / TRACK_WIDTH_M
+    true = MULTIPLIER * truth["e_b"]
     assert found["new"] == pytest.approx(true, rel=1e-3)
     # The interval at 95 % reaches to 1.96 standard errors; the truth is within 3.
     assert abs(true - found["new"]) < 3 / 1.96 * (found["high"] - found["low"]) / 2
