@@ -136,9 +136,13 @@ def looked_at(answers: Json) -> str:
 
 
 def near(moment: tuple[str, float], events: list[Json]) -> bool:
-    """Whether an event of that run is near."""
+    """Whether it is near an event of that run, or while that lasts."""
     run, at = moment
-    return any(one["run"] == run and abs(one["time_s"] - at) <= NEAR_S for one in events)
+    return any(
+        one["run"] == run
+        and one.get("since_s", one["time_s"]) - NEAR_S <= at <= one["time_s"] + NEAR_S
+        for one in events
+    )
 
 
 def jumps(learn: Json, stderr: str, truth: Json) -> Json:

@@ -21,18 +21,21 @@ mod disturbances;
 mod edges;
 mod faults;
 mod increments;
+mod low_pass;
 mod misread;
 mod notices;
 mod one_way;
 mod returns;
 mod shared;
+mod sightings;
+mod smoothed;
 mod stretches;
 mod suspicion;
 mod windows;
 
 use crate::drive::Robot;
 use crate::effect::TestKind;
-use crate::geometry::{Displacement2, Pose2, wrap};
+use crate::geometry::wrap;
 use crate::path::Path;
 use crate::run::resolution::hidden;
 use crate::run::{Run, TickLog};
@@ -41,7 +44,7 @@ use crate::stats::robust;
 use agreement::{Agreement, Beside, Reading};
 use clock::Late;
 use disturbances::Found;
-use edges::Sighting;
+use sightings::unrecorded;
 use windows::{Rolled, Window, usual_step, windows};
 
 pub use counts_factor::CountsFactor;
@@ -265,9 +268,8 @@ impl Setup {
             return Setup { runs: seen.iter().map(named).collect(), doubts, ..Setup::default() };
         }
         let doubled = CountsFactor::of(&agreement, robot).filter(CountsFactor::is_double);
-        let sightings: Vec<Vec<Sighting>> = seen.iter().map(|seen| sightings(seen, robot, &agreement)).collect();
-        let relative = seen.iter().any(|seen| seen.log.relative);
-        let (found, noise) = disturbances::search(&sightings, relative, counted(&seen, wheelbase));
+        let scene = (robot, &agreement, reading);
+        let (found, noise) = smoothed::search(&seen, scene, agreed, mounting.delay.value);
         let runs = seen.iter().zip(found).map(|(seen, found)| RunSetup { ..told(named(seen), seen, found) }).collect();
         let sizes = other_turns(&seen, &agreement).or_else(|| unequal_wheels(robot, &mounting));
         let doubts = doubled.map(Suspicion::Doubled).into_iter().chain(sizes).collect();
@@ -354,10 +356,6 @@ const OTHER_WHEELS: f64 = 1.5;
 const SURELY: f64 = 4.0;
 /// If more than this share of all poses jump or are wrong, these are no accidents.
 const ACCIDENTS: f64 = 0.1;
-/// Rows are missing where there is none for this many times the usual time between two.
-const GAP: f64 = 5.0;
-/// Without rows for this long \[s\] while the wheels roll this far \[m\], the way of the wheels is not known.
-const BLIND: (f64, f64) = (0.5, 0.05);
 
 impl Jump {
     /// Whether a pose is within it.
@@ -413,70 +411,6 @@ fn told(mut run: RunSetup, seen: &Seen, found: Found) -> RunSetup {
     run.jumps = found.jumps.into_iter().map(jump).collect();
     run.delay = seen.late.measured();
     run
-}
-
-/// The longest time between two rows that follow each other \[s\], if it is much longer than usual.
-fn unrecorded(time: &[f64], usual: f64) -> Option<f64> {
-    let longest = time.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-    (longest > GAP * usual).then_some(longest)
-}
-
-/// Every pose of a run with the corresponding pose by the wheels, scaled and mounted as all runs agree.
-fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting> {
-    let wheelbase = robot.drive.wheelbase();
-    let (scale, [gain, drift]) = (agreement.scale(), agreement.turn);
-    let [ahead, left] = agreement.lever_on_robot();
-    let with_heading = seen.log.reference.iter().all(|pose| pose.heading.is_some());
-    let body = if with_heading { Pose2::new(ahead, left, agreement.yaw()) } else { Pose2::IDENTITY };
-    let (mut pose, mut rolled, mut now) = (Pose2::IDENTITY, [0.0; 2], None);
-    // Where positions and headings are measured, their own differences show whether the way is lost.
-    let asked = !with_heading || seen.log.headings_only && seen.log.relative;
-    let usual = usual_step(&seen.log.time);
-    let mut before: Option<(usize, f64)> = None;
-    let mut samples = seen.log.time.iter().copied().peekable();
-    let mut drive_to = |time: f64| {
-        let from: f64 = *now.get_or_insert(time);
-        let rolling = seen.rolled.between(from, time);
-        let [l, r] = rolling.travel;
-        let (way, turn) = (0.5 * (l + r), (r - l) / wheelbase);
-        let rotation = gain * turn + drift * way;
-        pose = pose.moved(&Displacement2 { forward: scale * way, sideways: scale * rolling.aside, rotation });
-        let gone = if rolling.aside == 0.0 { way.abs() } else { libm::hypot(way, rolling.aside) };
-        rolled = [rolled[0] + gone, rolled[1] + turn.abs()];
-        now = Some(time);
-        (pose, rolled)
-    };
-    let of = |reference: &crate::run::ReferencePose| {
-        let stamp = seen.log.time[reference.sample];
-        let taken = seen.late.taken(stamp);
-        // Sample by sample, so that each piece is an arc; poses are ordered by time, up to rounding.
-        while let Some(sample) = samples.next_if(|sample| *sample < taken) {
-            drive_to(sample);
-        }
-        let (pose, [way, turned]) = drive_to(taken);
-        let expected = pose.compose(&body);
-        let rolled = way + 0.5 * wheelbase * turned;
-        let blind = |(sample, rolled_then): (usize, f64)| {
-            let missing = unrecorded(&seen.log.time[sample..=reference.sample], usual);
-            missing.is_some_and(|seconds| seconds > BLIND.0) && rolled - rolled_then > BLIND.1
-        };
-        let after_gap = asked && before.is_some_and(blind);
-        before = Some((reference.sample, rolled));
-        Sighting {
-            time: stamp,
-            way,
-            turned,
-            rolled,
-            after_gap,
-            expected,
-            measured: if seen.log.headings_only {
-                (expected.x, expected.y, reference.heading)
-            } else {
-                (reference.x, reference.y, reference.heading)
-            },
-        }
-    };
-    seen.log.reference.iter().map(of).collect()
 }
 
 /// Variances of a pose \[m², rad²\] that whole counts make; those of the run where they are largest.

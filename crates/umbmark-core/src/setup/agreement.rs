@@ -12,6 +12,7 @@
 //! early in it and drives late comes out beside the arc, and a lever arm would otherwise stand in for that. Rotations are fitted first;
 //! with g from there, both equations are linear in what is sought.
 
+use super::faults::DOUBTFUL;
 use super::windows::{Rolling, Window};
 use crate::geometry::Real;
 use crate::stats::robust::{self, Line};
@@ -26,6 +27,8 @@ const MAIN: f64 = 0.05;
 
 /// The wheels clearly turn the robot if by more than this in a window \[rad\].
 const CLEAR_TURN: f64 = 0.05;
+/// A reference that turns by less than this share of what the wheels turn hardly turns.
+const HARDLY: f64 = 0.25;
 
 /// The misfit of distance and of rotation must be below this.
 const CREDIBLE: f64 = 0.7;
@@ -268,6 +271,16 @@ impl Agreement {
             whole += told.turn.abs();
         }
         if whole > 2.0 * LEAST_TURN { off / whole } else { 0.0 }
+    }
+
+    /// Whether the reference drives as far as the wheels roll, and turns hardly where the wheels turn: a wheel spun on the spot, and ticks and
+    /// poses are of one drive all the same.
+    pub fn only_wheels_turn(&self, windows: &[Beside], reading: Reading, wheelbase: f64) -> bool {
+        let told = || windows.iter().map(|beside| reading.told(beside, wheelbase));
+        let clear = |turn: f64| if turn.abs() > CLEAR_TURN { turn.abs() } else { 0.0 };
+        let [wheels, seen] =
+            told().fold([0.0; 2], |[wheels, seen], t| [wheels + clear(t.turn), seen + clear(t.turned)]);
+        seen < HARDLY * wheels && self.misfits_of(windows, reading, wheelbase)[0] < DOUBTFUL
     }
 
     /// Residuals of a window: both coordinates \[m\] and the rotation \[rad\].

@@ -105,7 +105,7 @@ fn behind_gaps(run: &[Sighting], kept: &[usize], jumps: &mut Vec<Edge>, spread: 
 }
 
 impl Found {
-    /// Poses that are not kept are wrong, except those within a lasting jump.
+    /// Poses that are not kept are wrong, except those within a jump.
     fn of(run: &[Sighting], kept: &[usize], jumps: Vec<Edge>) -> Found {
         let mut wrong = Vec::new();
         let mut next = 0;
@@ -119,9 +119,8 @@ impl Found {
             let ([x, y], turned) = difference(&run[from], &run[pose]);
             wrong.push(Wrong { pose, moved: libm::hypot(x, y), turned });
         }
-        let lasts = |jump: &Edge| kept.iter().any(|pose| jump.from < *pose && *pose < jump.to);
-        let lasting: Vec<Edge> = jumps.iter().filter(|jump| lasts(jump)).copied().collect();
-        wrong.retain(|wrong| !lasting.iter().any(|jump| jump.from < wrong.pose && wrong.pose < jump.to));
+        // What lies within a jump is the way that the wheels did not make.
+        wrong.retain(|wrong| !jumps.iter().any(|jump| jump.from < wrong.pose && wrong.pose < jump.to));
         let jumps = jumps.into_iter().map(|Edge { from, to, deviations }| {
             let ([x, y], turned) = difference(&run[from], &run[to]);
             Leap { from, pose: to, moved: libm::hypot(x, y), turned, deviations }

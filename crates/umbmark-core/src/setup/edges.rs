@@ -10,6 +10,8 @@ pub(super) const JUMP: f64 = 10.0;
 pub(super) const LARGE: f64 = 4.0;
 /// The noise is estimated from edges over these numbers of poses.
 const OVER: [usize; 4] = [1, 2, 4, 8];
+/// Poses are compared that are so many apart: enough for what a filter hides.
+const APART: usize = 8;
 /// The noise is estimated by the size of the motion, in this many parts of all edges.
 const PARTS: usize = 10;
 /// Minimum standard deviation \[m, rad\], and minimum in terms of the motion in this time \[s\]: smaller differences are treated as noise
@@ -103,6 +105,15 @@ impl Spread {
         };
         let turned = turned.map_or(0.0, |turned| turned * turned / variance(&self.heading, to.turned - from.turned));
         ((x * x + y * y) / variance(&self.position, to.way - from.way) + turned).sqrt()
+    }
+
+    /// Mean square of the standard deviations between poses of all runs, in which no pair counts more than a jump.
+    pub fn misfit(&self, runs: &[Vec<Sighting>]) -> f64 {
+        let squares = runs.iter().flat_map(|run| {
+            run.windows(APART + 1).map(|poses| self.deviations(&poses[0], &poses[APART]).min(JUMP).powi(2))
+        });
+        let (sum, pairs) = squares.fold((0.0, 0), |(sum, pairs), square| (sum + square, pairs + 1));
+        sum / f64::from(pairs.max(1))
     }
 }
 

@@ -348,7 +348,7 @@ pub(super) fn differing(
                 true => agreed.misfit_of_turns(own, reading, wheelbase),
                 false => agreed.misfits_of(own, reading, wheelbase)[0],
             };
-            if misfit > NOTHING {
+            if misfit > NOTHING && !agreed.only_wheels_turn(own, reading, wheelbase) {
                 strange.push((*name).to_owned());
                 least = least.min(misfit);
             }

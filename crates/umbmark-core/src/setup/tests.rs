@@ -1,6 +1,7 @@
 use super::*;
 use crate::dataset::ReferencePose;
 use crate::drive::{DifferentialDrive, Encoder, Wiring};
+use crate::geometry::Pose2;
 use crate::random::Stream;
 
 mod driven;
@@ -16,6 +17,8 @@ struct Drive {
     /// Delay of the stamps in each run \[s\], the first of them also where there are no more, and what is added each second.
     delays: Vec<f64>,
     rate: f64,
+    /// Time constant of a low-pass filter of the poses \[s\]; 0 for none.
+    smoothed: f64,
     /// The tracked body on the robot.
     body: Pose2,
     /// What is written of a pose.
@@ -43,6 +46,7 @@ fn clean() -> Drive {
         counts: 20_000.0,
         delays: vec![0.0],
         rate: 0.0,
+        smoothed: 0.0,
         body: Pose2::IDENTITY,
         written: |x, y, heading| (x, y, heading),
         exchanged: Vec::new(),
@@ -73,7 +77,7 @@ impl Drive {
 
     fn run(&self, run: usize) -> Run {
         let mut stream = Stream::new(self.seed, 0, run as u64);
-        let driven = (self.driven)(self.seconds, &mut stream);
+        let driven = driven::smoothed((self.driven)(self.seconds, &mut stream), self.smoothed);
         let delay = self.delays.get(run).copied().unwrap_or(self.delays[0]);
         let per_tick = self.robot().metres_per_tick();
         let mut log = TickLog::default();
@@ -327,6 +331,17 @@ fn runs_with_poses_of_another_drive_are_named_and_only_these() {
 
 /// Positions alone show a course, which points back while the robot drives back, and none in turns on the spot.
 #[test]
+fn a_wheel_that_spins_on_the_spot_in_a_straight_drive_is_a_jump_and_no_other_drive() {
+    let mut runs = clean().runs();
+    runs[2] = Drive { driven: driven::spinning_once, ..clean() }.run(2);
+    let found = Setup::of(&runs, &robot(), None);
+    assert!(found.is_sound(), "{:?}", found.faults);
+    assert_eq!(found.disturbances(), [1, 0], "{:?}", found.runs);
+    let jump = &found.runs[2].jumps[0];
+    assert!(jump.since > 19.0 && jump.time < 23.0 && (jump.turned.unwrap() + 2.0).abs() < 0.1, "{jump:?}");
+}
+
+#[test]
 fn positions_alone_accuse_nobody_who_drives_back_or_turns_on_the_spot() {
     type Kind = fn(f64, &mut Stream) -> driven::Driven;
     let spinning: Kind = |seconds, stream| {
@@ -440,6 +455,19 @@ fn several_jumps_in_a_set_and_one_in_every_run_are_named_with_time_and_size() {
             assert!((jump.turned.unwrap() - turned).abs() < 0.03, "{jump:?}");
             assert_eq!(jump.unrecorded, None, "{jump:?}");
         }
+    }
+}
+
+#[test]
+fn quick_turns_that_a_filter_of_the_reference_rounds_are_no_jumps_and_a_jump_among_them_is_one() {
+    for smoothed in [0.25, 0.4] {
+        let clean = Drive { driven: driven::stop_and_turn, smoothed, ..clean() };
+        let found = clean.found();
+        assert_eq!(found.disturbances(), [0, 0], "{smoothed}: {:?}", found.runs);
+        let one = Drive { jumps: vec![(1, 20.0, [0.4, -0.3, 0.5])], ..clean }.found();
+        assert_eq!(one.disturbances()[0], 1, "{smoothed}: {:?}", one.runs);
+        let jump = &one.runs[1].jumps[0];
+        assert!((jump.time - 20.0).abs() < 0.06 && (jump.moved - 0.5).abs() < 0.05, "{jump:?}");
     }
 }
 

@@ -1,5 +1,6 @@
 //! The motion of a run cut into short windows, as the reference measured it and as the wheels rolled.
 
+use super::low_pass::LowPass;
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::wrap;
 use crate::run::TickLog;
@@ -146,10 +147,24 @@ impl<'a> Rolled<'a> {
             let readings: Vec<f64> = (0..times.len()).filter(|k| !log.is_put_in(*k)).map(|k| times[k]).collect();
             rolled.travel = rolled.smooth(LONG.max(2.0 * usual_step(&readings)));
         }
-        for sample in 1..times.len() {
-            rolled.areas[sample] = rolled.areas[sample - 1] + swept(rolled.travel[sample - 1], rolled.travel[sample]);
+        rolled.with_areas()
+    }
+
+    fn with_areas(mut self) -> Rolled<'a> {
+        for sample in 1..self.times.len() {
+            self.areas[sample] = self.areas[sample - 1] + swept(self.travel[sample - 1], self.travel[sample]);
         }
-        rolled
+        self
+    }
+
+    /// The same behind a low-pass filter of a time constant \[s\].
+    pub fn filtered(&self, time_constant: f64) -> Rolled<'a> {
+        let mut travel = LowPass::<2>::new(time_constant);
+        let mut aside = LowPass::<1>::new(time_constant);
+        let areas = vec![0.0; self.times.len()];
+        let travel = self.times.iter().zip(&self.travel).map(|(time, now)| travel.follow(*time, *now)).collect();
+        let asides = self.times.iter().zip(&self.asides).map(|(time, now)| aside.follow(*time, [*now])[0]).collect();
+        Rolled { travel, asides, areas, ..*self }.with_areas()
     }
 
     /// Standard deviation of a travel that whole counts at both ends make \[m\], of a coordinate of the robot.

@@ -48,6 +48,38 @@ pub(super) fn pursuing(seconds: f64, stream: &mut Stream) -> Driven {
     })
 }
 
+/// Straight ahead, a stop, a turn on the spot at 3 rad/s that begins and ends at once, and a stop.
+pub(super) fn stop_and_turn(seconds: f64, stream: &mut Stream) -> Driven {
+    let (mut leg, mut left, mut phase) = ([0.0; 2], 0, 0);
+    at_speeds(seconds, |_| {
+        if left == 0 {
+            phase = (phase + 1) % 4;
+            let side = if stream.uniform() < 0.5 { -3.0 } else { 3.0 };
+            let lasts;
+            (leg, lasts) = match phase {
+                1 => ([0.4, 0.0], 2.0 + 2.0 * stream.uniform()),
+                3 => ([0.0, side], 0.5 + 0.5 * stream.uniform()),
+                _ => ([0.0, 0.0], 1.0),
+            };
+            left = (1000.0 * lasts) as usize;
+        }
+        left -= 1;
+        leg
+    })
+}
+
+/// The same with poses behind a first-order low-pass filter of this time constant \[s\].
+pub(super) fn smoothed(mut driven: Driven, time_constant: f64) -> Driven {
+    let share = if time_constant > 0.0 { 1e-3 / time_constant } else { 1.0 };
+    let mut shown = driven[0].0;
+    for (pose, _) in &mut driven {
+        let of = |shown: f64, now: f64| shown + share * (now - shown);
+        shown = Pose2::new(of(shown.x, pose.x), of(shown.y, pose.y), of(shown.heading, pose.heading));
+        *pose = shown;
+    }
+    driven
+}
+
 /// Every two seconds another speed and turn rate, and rest for two seconds at both ends.
 pub(super) fn free(seconds: f64, stream: &mut Stream) -> Driven {
     let pick = |values: &[f64], stream: &mut Stream| values[(stream.uniform() * values.len() as f64) as usize];
@@ -111,8 +143,19 @@ pub(super) fn lawn(seconds: f64, _: &mut Stream) -> Driven {
     })
 }
 
+/// Straight ahead and back, five seconds each.
+pub(super) fn to_and_fro(seconds: f64, _: &mut Stream) -> Driven {
+    integrated(seconds, |step| [if step % 10_000 < 5_000 { 0.3 } else { -0.3 }, 0.0])
+}
+
+/// The same, where the right wheel spins for two seconds after 20 s: by its count, the robot turns by two radians.
+pub(super) fn spinning_once(seconds: f64, stream: &mut Stream) -> Driven {
+    let spun = |step: usize| WHEELBASE * ((step as f64 - 20_000.0) / 1000.0).clamp(0.0, 2.0);
+    let driven = to_and_fro(seconds, stream).into_iter().enumerate();
+    driven.map(|(step, (pose, [left, right]))| (pose, [left, right + spun(step)])).collect()
+}
+
 /// Straight ahead and back, five seconds each, on wheels of unequal diameter: by their counts the robot turns, and by the reference it does not.
-pub(super) fn forth_and_back(seconds: f64, _: &mut Stream) -> Driven {
-    let straight = integrated(seconds, |step| [if step % 10_000 < 5_000 { 0.3 } else { -0.3 }, 0.0]);
-    straight.into_iter().map(|(pose, [left, right])| (pose, [0.99 * left, 1.01 * right])).collect()
+pub(super) fn forth_and_back(seconds: f64, stream: &mut Stream) -> Driven {
+    to_and_fro(seconds, stream).into_iter().map(|(pose, [left, right])| (pose, [0.99 * left, 1.01 * right])).collect()
 }
