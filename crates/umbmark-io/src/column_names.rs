@@ -2,7 +2,7 @@
 
 use super::document::Table;
 use super::error::{At, DatasetError, LineProblem, quoted};
-use super::proposal::FILL_IN;
+use super::file_names::FILL_IN;
 use std::cell::Cell;
 use std::rc::Rc;
 use umbmark_core::dataset::ColumnName;

@@ -2,8 +2,8 @@
 
 use super::columns::{Columns, Quantity};
 use super::error::{At, DatasetError, LineProblem, quoted};
+use super::file_names::RUNS;
 use super::label;
-use super::layout::csv::RUNS;
 use super::probe::Probe;
 use super::sheet::Sheet;
 use super::source::Source;

@@ -2,7 +2,7 @@
 
 use super::conditions::CONDITIONS;
 use super::error::{DatasetError, LineProblem};
-use super::layout::csv::{RETURNS, RUNS, robot_beside};
+use super::file_names::{RETURNS, RUNS, robot_beside};
 use super::layout::messages::Topics;
 use super::layout::{is_foreign, is_log, look};
 use super::probe::{Probe, names_in, stem};

@@ -1,7 +1,7 @@
 //! The geometry in the parameters of a ROS 2 controller.
 
 use super::error::DatasetError;
-use super::proposal::KnownNumbers;
+use super::known_numbers::KnownNumbers;
 use super::source::read_text;
 use serde_json::{Map, Value};
 use std::path::Path;

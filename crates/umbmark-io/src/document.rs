@@ -1,7 +1,7 @@
 //! TOML with positions: tables that know their file and line, and say what they expected.
 
 use super::error::{At, DatasetError, LineProblem, quoted};
-use super::proposal::FILL_IN;
+use super::file_names::FILL_IN;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use umbmark_core::parameter::{Parameter, nearest};

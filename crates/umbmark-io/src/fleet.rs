@@ -1,7 +1,7 @@
 //! Where the robots of a fleet are.
 
 use super::error::DatasetError;
-use super::layout::csv::ROBOT;
+use super::file_names::ROBOT;
 use super::probe::{Probe, names_in};
 use super::together::names;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! What a place shows of itself before anything in it is read.
 
 use super::error::DatasetError;
-use super::layout::csv::robot_beside;
+use super::file_names::robot_beside;
 use super::robot_file::RobotFile;
 use super::source::{Source, unreadable};
 use std::path::{Path, PathBuf};

@@ -4,7 +4,9 @@ use super::column_names::COLUMNS;
 use super::contents::{FoundLog, logs_in};
 use super::error::DatasetError;
 use super::export::UrdfFile;
-use super::layout::csv::{self, REFERENCE, ROBOT, RUNS};
+use super::file_names::{FILL_IN, ROBOT, RUNS};
+use super::known_numbers::KnownNumbers;
+use super::layout::csv::{self, REFERENCE};
 use super::layout::messages::Topics;
 use super::layout::{log_endings, look};
 use super::probe::{extension, name_of, names_in};
@@ -16,47 +18,6 @@ use std::path::{Path, PathBuf};
 use umbmark_core::drive::{DriveKind, Encoder};
 use umbmark_core::inspect::{LogContents, WheelUnit, WheelsFound};
 use umbmark_core::parameter::Parameter;
-
-/// What stands in place of a number that is to be filled in. A file that still has it is refused.
-pub(super) const FILL_IN: &str = "fill in";
-
-/// Numbers of a robot from one source, such as a URDF.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct KnownNumbers {
-    /// The robot's name, where the source has one.
-    pub name: Option<String>,
-    /// The numbers.
-    pub numbers: Vec<KnownNumber>,
-    file: String,
-}
-
-/// A number of a robot, and where it is from.
-#[derive(Clone, Debug, PartialEq)]
-pub struct KnownNumber {
-    /// Its key in robot.toml.
-    pub key: &'static str,
-    /// Its value, in the unit of the key.
-    pub value: f64,
-    /// Where it is from, in words.
-    pub source: String,
-}
-
-impl KnownNumbers {
-    /// None yet, from a file; an empty name stands for the command line.
-    pub fn of(file: &str) -> KnownNumbers {
-        KnownNumbers { file: file.to_owned(), ..KnownNumbers::default() }
-    }
-
-    /// Adds a number, which is `what` in the file.
-    pub fn push(&mut self, key: &'static str, value: f64, what: &str) {
-        let source = if self.file.is_empty() { what.to_owned() } else { format!("{what} in {}", self.file) };
-        self.numbers.push(KnownNumber { key, value, source });
-    }
-
-    fn get(&self, keys: &[&str]) -> Option<&KnownNumber> {
-        self.numbers.iter().find(|number| keys.contains(&number.key))
-    }
-}
 
 /// A line of the proposed `[robot]`.
 #[derive(Clone, Debug, PartialEq)]

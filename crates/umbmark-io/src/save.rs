@@ -1,7 +1,7 @@
 //! Files written to folders: all of them beside, looked at once more, and then renamed into place.
 
 use super::error::DatasetError;
-use super::layout::csv::{RETURNS, RUNS};
+use super::file_names::{RETURNS, RUNS};
 use super::remedy::Remedy;
 use super::unfinished::Unfinished;
 use super::whole_file::{Place, WholeFile};

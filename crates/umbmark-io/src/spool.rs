@@ -1,7 +1,7 @@
 //! What can be read only once: standard input and named pipes, copied into a file while it is read.
 
 use super::error::DatasetError;
-use super::layout::csv::ROBOT;
+use super::file_names::ROBOT;
 use super::layout::ending_of_messages;
 use super::source::unreadable;
 use super::unfinished::Unfinished;

@@ -2,7 +2,7 @@
 
 use super::RobotFile;
 use super::error::DatasetError;
-use super::layout::csv::{RETURNS, ROBOT};
+use super::file_names::{RETURNS, ROBOT};
 use super::save::{Existing, put_beside_logs};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

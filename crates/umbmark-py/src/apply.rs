@@ -17,9 +17,6 @@ type Arrays<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>
 /// The corrected odometry of each run that has a log.
 #[pyfunction]
 pub fn apply<'py>(py: Python<'py>, data: &Dataset, model: &Model, start: [f64; 3]) -> PyResult<Vec<Arrays<'py>>> {
-    if start.iter().any(|number| !number.is_finite()) {
-        return Err(PyValueError::new_err(format!("start must be three finite numbers, got {start:?}")));
-    }
     if let Some(drawn) = model.draws.first() {
         let (parameter, effect) = (drawn.parameter().name, drawn.effect());
         return Err(PyValueError::new_err(format!("{parameter} of {effect} is drawn; give it a value")));

@@ -3,6 +3,8 @@
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
+use crate::model::Model;
+
 /// What a function of `umbmark._arguments` makes of an argument.
 fn read<'py>(
     function: &str,
@@ -25,6 +27,22 @@ pub fn threads(given: &Bound<'_, PyAny>) -> PyResult<usize> {
 /// A whole number within a range, both ends included.
 pub fn whole(name: &str, given: &Bound<'_, PyAny>, least: u64, most: u64) -> PyResult<u64> {
     read("whole", (name, given, least, most), given.py())?.extract()
+}
+
+/// A number of any real type.
+pub fn real(name: &str, given: &Bound<'_, PyAny>) -> PyResult<f64> {
+    read("real", (name, given), given.py())?.extract()
+}
+
+/// A model.
+pub fn model(given: &Bound<'_, PyAny>) -> PyResult<Model> {
+    let checked = given.py().import("umbmark._scores")?.call_method1("a_model", (given,))?;
+    Ok(checked.cast::<Model>()?.get().clone())
+}
+
+/// A whole number of either sign.
+pub fn integer<'py>(name: &str, given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    read("integer", (name, given), given.py())
 }
 
 /// Numbers of any real type, shape (n,).

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2, ndarray::Array2};
-use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::exceptions::{PyIndexError, PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyIterator, PySlice, PyTuple};
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ use umbmark_core::dataset::{self as core, RunClock, RunConditions, RunTopics};
 use umbmark_core::result;
 use umbmark_io::{Layout, Recorded, Topics, assemble};
 
-use crate::arguments::poses;
+use crate::arguments::{integer, poses};
 use crate::path::{DIRECTIONS, Path};
 use crate::robot::Robot;
 use crate::run::{self, Run, TESTS};
@@ -269,7 +269,18 @@ impl Dataset {
             };
             return Ok(Dataset::from(part).into_pyobject(py)?.into_any());
         }
-        self.runs(py)?.as_any().get_item(key)
+        let given = integer("index", key)?;
+        let count = self.0.runs.len();
+        let from_end = |index: isize| if index < 0 { index.checked_add_unsigned(count) } else { Some(index) };
+        let place = given.extract().ok().and_then(from_end).and_then(|index| usize::try_from(index).ok());
+        let Some(place) = place.filter(|place| *place < count) else {
+            let words = match count.checked_sub(1) {
+                Some(last) => format!("index must be between -{count} and {last}, got {given}"),
+                None => "there are no runs".to_owned(),
+            };
+            return Err(PyIndexError::new_err(words));
+        };
+        Ok(Run::of(&self.0, place).into_pyobject(py)?.into_any())
     }
 
     fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
@@ -495,6 +506,13 @@ pub enum Places {
 }
 
 impl Places {
+    fn of(given: &Bound<'_, PyAny>) -> PyResult<Places> {
+        given.extract().map_err(|_| {
+            let got = given.repr().and_then(|shown| Ok(format!("{shown} ({})", given.get_type().name()?)));
+            PyTypeError::new_err(format!("place must be a path, or several, got {}", got.unwrap_or_default()))
+        })
+    }
+
     fn all(self) -> Vec<PathBuf> {
         match self {
             Places::One(place) => vec![place],
@@ -529,7 +547,7 @@ impl Places {
 #[pyo3(signature = (place, *, ticks=None, reference=None))]
 pub fn load_dataset(
     py: Python<'_>,
-    place: Places,
+    #[pyo3(from_py_with = Places::of)] place: Places,
     ticks: Option<String>,
     reference: Option<String>,
 ) -> PyResult<Dataset> {

@@ -23,16 +23,13 @@ use crate::model::Model;
 use crate::work::{Watch, watched};
 use crate::{json, probability, refused};
 
-/// Numbers of simulated tests that a p-value may come from.
-const DRAWS: std::ops::RangeInclusive<i64> = 99..=99_999;
-
 /// Models beside measurements; without any, the nominal robot, and the first model fitted to the data.
 #[pyfunction]
 pub fn compare(
     py: Python<'_>,
     data: &Dataset,
     models: Vec<(String, Model)>,
-    options: (f64, i64, u64),
+    options: (f64, usize, u64),
     return_poses: bool,
     #[pyo3(from_py_with = threads)] threads: usize,
 ) -> PyResult<(String, String)> {
@@ -60,7 +57,7 @@ pub fn diagnose(
     py: Python<'_>,
     data: &Dataset,
     model: Option<&Model>,
-    options: (f64, i64, u64),
+    options: (f64, usize, u64),
     return_poses: bool,
     #[pyo3(from_py_with = threads)] threads: usize,
 ) -> PyResult<(String, String, Model)> {
@@ -111,7 +108,7 @@ pub fn learn(
     py: Python<'_>,
     data: &Dataset,
     start: Option<&Model>,
-    options: (f64, i64, u64),
+    options: (f64, usize, u64),
     return_poses: bool,
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
@@ -132,7 +129,7 @@ pub fn learn(
 pub fn solve(
     py: Python<'_>,
     data: &Dataset,
-    options: (f64, i64, u64),
+    options: (f64, usize, u64),
     return_poses: bool,
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
@@ -152,7 +149,7 @@ pub fn changed(
     before: &Dataset,
     after: &Dataset,
     start: Option<&Model>,
-    options: (f64, i64, u64),
+    options: (f64, usize, u64),
     return_poses: bool,
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
@@ -197,7 +194,7 @@ pub fn survey(
     py: Python<'_>,
     robots: Vec<(String, Py<Dataset>)>,
     diagnosis: bool,
-    options: (f64, i64, u64),
+    options: (f64, usize, u64),
     return_poses: bool,
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
@@ -241,11 +238,7 @@ fn asked(py: Python<'_>, data: &Dataset, model: Option<&Model>) -> PyResult<effe
 }
 
 /// Size, draws and seed of tests, checked.
-pub fn options_of((size, draws, seed): (f64, i64, u64), ends_only: bool) -> PyResult<Options> {
+pub fn options_of((size, draws, seed): (f64, usize, u64), ends_only: bool) -> PyResult<Options> {
     probability("size", size)?;
-    if !DRAWS.contains(&draws) {
-        let (least, most) = (DRAWS.start(), DRAWS.end());
-        return Err(PyValueError::new_err(format!("draws must be between {least} and {most}, got {draws}")));
-    }
-    Ok(Options { size, draws: draws as usize, seed, ends_only, ..Options::default() })
+    Ok(Options { size, draws, seed, ends_only, ..Options::default() })
 }

@@ -27,7 +27,7 @@ pub type Asked = (String, Py<Dataset>, Option<(String, Model)>);
 const TRIALS: std::ops::RangeFrom<u64> = 100..;
 
 /// How studies are made: size, draws and seed of tests, return poses alone, simulated tests.
-pub fn options((tests, return_poses, trials): ((f64, i64, u64), bool, u64)) -> PyResult<Options> {
+pub fn options((tests, return_poses, trials): ((f64, usize, u64), bool, u64)) -> PyResult<Options> {
     if !TRIALS.contains(&trials) {
         return Err(PyValueError::new_err(format!("n must be {} or more, got {trials}", TRIALS.start)));
     }
@@ -186,7 +186,7 @@ pub fn figure(
     py: Python<'_>,
     kind: &str,
     asked: Asked,
-    how: ((f64, i64, u64), bool, u64),
+    how: ((f64, usize, u64), bool, u64),
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Figure> {

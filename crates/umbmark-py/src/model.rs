@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ffi::CString;
 
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use toml::{Table, Value};
@@ -113,7 +113,12 @@ impl Model {
             effects.extend(laws);
             return self.with(effects)?.changed(py, keys);
         }
-        let name: &str = &name.extract::<String>()?;
+        let Ok(given) = name.extract::<String>() else {
+            let got = (name.repr()?, name.get_type().name()?);
+            let words = "name must be that of an effect, a function, or a suggestion";
+            return Err(PyTypeError::new_err(format!("{words}, got {} ({})", got.0, got.1)));
+        };
+        let name: &str = &given;
         let keys = match keys {
             Some(keys) => py.import("umbmark._formula")?.call_method1("as_text", (keys,))?.cast_into::<PyDict>()?,
             None => PyDict::new(py),

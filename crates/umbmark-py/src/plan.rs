@@ -97,7 +97,7 @@ pub fn plan(
     power: f64,
     numbers: Vec<usize>,
     order: &str,
-    options: (f64, i64, u64),
+    options: (f64, usize, u64),
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, String, String, String)> {
@@ -135,7 +135,7 @@ pub fn separate(
     pair: (String, String),
     whose: Whose,
     runs: usize,
-    options: (f64, i64, u64),
+    options: (f64, usize, u64),
     #[pyo3(from_py_with = threads)] threads: usize,
 ) -> PyResult<(String, String)> {
     whose.check()?;

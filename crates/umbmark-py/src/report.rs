@@ -18,7 +18,7 @@ use crate::{existing, json, refused, unwritten};
 pub fn report(
     py: Python<'_>,
     asked: Vec<Asked>,
-    how: ((f64, i64, u64), bool, u64),
+    how: ((f64, usize, u64), bool, u64),
     call: String,
     places: Vec<PathBuf>,
     #[pyo3(from_py_with = threads)] threads: usize,

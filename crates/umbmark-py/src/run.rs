@@ -10,7 +10,7 @@ use umbmark_core::dataset::{self as core, Dataset, ReferencePose, ReturnError, T
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::Direction;
 
-use crate::arguments::{self, column, indices};
+use crate::arguments::{self, column, indices, whole};
 use crate::path::DIRECTIONS;
 use crate::{choice, hash_of, refused};
 
@@ -70,7 +70,7 @@ impl Run {
     #[allow(clippy::too_many_arguments)]
     fn new(
         direction: Option<&str>,
-        number: u32,
+        #[pyo3(from_py_with = number)] number: u32,
         name: Option<String>,
         test: &str,
         returned: Option<Vec<f64>>,
@@ -228,6 +228,11 @@ impl Run {
     fn column<'py>(&self, py: Python<'py>, of: fn(&TickLog) -> &Vec<f64>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.core().log.as_ref().map(|log| PyArray1::from_slice(py, of(log)))
     }
+}
+
+/// A number of a run.
+fn number(given: &Bound<'_, PyAny>) -> PyResult<u32> {
+    Ok(whole("number", given, 0, u32::MAX.into())? as u32)
 }
 
 fn return_error(error: &[f64]) -> PyResult<ReturnError> {

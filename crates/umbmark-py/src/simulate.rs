@@ -7,7 +7,7 @@ use umbmark_core::path::Path as CorePath;
 use umbmark_core::replay::check_on_path;
 use umbmark_core::simulate::{is_extended, record_test};
 
-use crate::arguments::seed;
+use crate::arguments::{model, real, seed, whole};
 use crate::dataset::Dataset;
 use crate::model::Model;
 use crate::monte_carlo::runs_of;
@@ -53,15 +53,15 @@ use crate::work::watched;
 #[pyo3(signature = (model, path=None, *, runs=None, reference_rate_hz=20.0, seed=1, trial=0))]
 pub fn simulate(
     py: Python<'_>,
-    model: &Model,
+    #[pyo3(from_py_with = model)] model: Model,
     path: Option<&Path>,
     runs: Option<&Bound<'_, PyAny>>,
-    reference_rate_hz: f64,
+    #[pyo3(from_py_with = hertz)] reference_rate_hz: f64,
     #[pyo3(from_py_with = seed)] seed: u64,
-    trial: u64,
+    #[pyo3(from_py_with = trial)] trial: u64,
 ) -> PyResult<Dataset> {
     let runs = runs.map_or(Ok([5, 5]), runs_of)?;
-    let Model { model, draws, .. } = model.clone();
+    let Model { model, draws, .. } = model;
     let path = path.map_or_else(CorePath::umbmark, |path| path.0.clone());
     check_on_path(&model, &path).map_err(refused)?;
     let drawn = draw_parameters(&model, &draws, seed, trial).map_err(refused)?;
@@ -69,4 +69,14 @@ pub fn simulate(
     let recorded =
         watched(py, 1, None, move |_| record_test(&drawn, &path, tests, runs, reference_rate_hz, [seed, trial]))?;
     Ok(Dataset::from(recorded.map_err(refused)?))
+}
+
+/// How often the pose is measured.
+fn hertz(given: &Bound<'_, PyAny>) -> PyResult<f64> {
+    real("reference_rate_hz", given)
+}
+
+/// Which trial of a seed.
+fn trial(given: &Bound<'_, PyAny>) -> PyResult<u64> {
+    whole("trial", given, 0, u64::MAX)
 }

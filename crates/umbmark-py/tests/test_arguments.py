@@ -389,6 +389,58 @@ WRONG: dict[str, tuple[Callable[[umbmark.Dataset], object], str]] = {
         lambda data: umbmark.compare(data, {"mine": "model.toml"}),  # type: ignore[dict-item]
         "model must be a Model, got 'model.toml' (str); Model.read reads a file",
     ),
+    "model of a study": (
+        lambda _: umbmark.monte_carlo("model.toml", n=1),  # type: ignore[arg-type]
+        "model must be a Model, got 'model.toml' (str); Model.read reads a file",
+    ),
+    "model of a sweep": (
+        lambda _: umbmark.sweep("model.toml", {"ed": (0.9, 1.1, 3)}),  # type: ignore[arg-type]
+        "model must be a Model, got 'model.toml' (str); Model.read reads a file",
+    ),
+    "model of a report": (
+        lambda data: umbmark.report(data, "model.toml"),  # type: ignore[arg-type]
+        "model must be a Model, got 'model.toml' (str); Model.read reads a file",
+    ),
+    "model of a figure": (
+        lambda data: umbmark.plot("circle", data, "model.toml"),  # type: ignore[arg-type]
+        "model must be a Model, got 'model.toml' (str); Model.read reads a file",
+    ),
+    "model to export": (
+        lambda _: umbmark.export("model.toml", to="toml"),  # type: ignore[arg-type]
+        "model must be a Model, got 'model.toml' (str); Model.read reads a file",
+    ),
+    "model to simulate": (
+        lambda _: umbmark.simulate("model.toml"),  # type: ignore[arg-type]
+        "model must be a Model, got 'model.toml' (str); Model.read reads a file",
+    ),
+    "reference_rate_hz": (
+        lambda _: umbmark.simulate(NOISE, reference_rate_hz="x"),  # type: ignore[arg-type]
+        "reference_rate_hz must be a number, got 'x' (str)",
+    ),
+    "trial": (
+        lambda _: umbmark.simulate(NOISE, trial=0.5),  # type: ignore[arg-type]
+        "trial must be a whole number, got 0.5 (float)",
+    ),
+    "name of an effect": (
+        lambda _: umbmark.Model().add(3),  # type: ignore[call-overload]
+        "name must be that of an effect, a function, or a suggestion, got 3 (int)",
+    ),
+    "number of a run": (
+        lambda _: umbmark.Run("cw", "one"),  # type: ignore[arg-type]
+        "number must be a whole number, got 'one' (str)",
+    ),
+    "index": (
+        lambda data: data[1.5],
+        "index must be a whole number, got 1.5 (float)",
+    ),
+    "place": (
+        lambda _: umbmark.load_dataset(3),  # type: ignore[arg-type]
+        "place must be a path, or several, got 3 (int)",
+    ),
+    "start": (
+        lambda data: umbmark.apply(data, NOISE, start="here"),  # type: ignore[arg-type]
+        "start must be numbers of shape (n,), got str",
+    ),
     "robots": (
         lambda data: umbmark.survey(data),  # type: ignore[arg-type]
         "robots must be a mapping or a sequence of data, got Dataset",
@@ -413,3 +465,19 @@ def test_a_number_that_is_out_of_range_is_refused_by_the_name_of_the_argument() 
         umbmark.plan(numbers=[-1])
     with pytest.raises(ValueError, match="robots must be between 0 and"):
         umbmark.tolerance([], robots=-3)
+    with pytest.raises(
+        ValueError, match="trial must be between 0 and 18446744073709551615, got -1"
+    ):
+        umbmark.simulate(NOISE, trial=-1)
+    with pytest.raises(ValueError, match="number must be between 0 and 4294967295, got -1"):
+        umbmark.Run("cw", -1)
+    data = umbmark.simulate(NOISE, runs=2, reference_rate_hz=0)
+    for index in (4, -5, 2**70):
+        with pytest.raises(IndexError, match=f"index must be between -4 and 3, got {index}"):
+            data[index]
+    assert data[-1] == data[3]
+    with pytest.raises(ValueError, match=f"draws must be between 99 and 99999, got {2**70}"):
+        umbmark.diagnose(data, draws=2**70)
+    for start in ((1, 2), (0, 0, np.nan)):
+        with pytest.raises(ValueError, match="start must be three finite numbers"):
+            umbmark.apply(data, NOISE, start=start)  # type: ignore[arg-type]

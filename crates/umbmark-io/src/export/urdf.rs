@@ -2,7 +2,7 @@
 
 use super::text::{number, to_nanometre};
 use super::{Export, ExportError, Target, Written};
-use crate::proposal::KnownNumbers;
+use crate::known_numbers::KnownNumbers;
 use crate::remedy::{Argument, Remedy};
 use crate::wheel_names::{Side, candidates};
 use crate::whole_file::in_words;

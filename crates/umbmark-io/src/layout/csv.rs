@@ -12,6 +12,7 @@ use crate::RobotFile;
 use crate::assembly::Assembly;
 use crate::conditions::{CONDITIONS, conditions_text, of_runs};
 use crate::error::DatasetError;
+use crate::file_names::{RETURNS, ROBOT, RUNS};
 use crate::foreign::Foreign;
 use crate::label;
 use crate::probe::{Probe, extension, name_of, names_in, stem};
@@ -30,10 +31,7 @@ pub(crate) const LAYOUT: Layout = Layout::new("csv", "robot.toml, returns.csv an
     .reads_tracks((&["csv"], track::is_track, track::parse_columns))
     .writes(write);
 
-pub(crate) const ROBOT: &str = "robot.toml";
-pub(crate) const RETURNS: &str = "returns.csv";
 const MARKS: &str = "marks.csv";
-pub(crate) const RUNS: &str = "runs";
 pub(crate) const REFERENCE: &str = "reference";
 const EXPECTED: &str =
     "a dataset has robot.toml with returns.csv, runs/*.csv or runs/*.mcap (`umbmark init FOLDER` writes a start)";
@@ -172,13 +170,6 @@ fn read_file(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
         add_returns(&mut assembly, file)?;
     }
     assembly.finish()
-}
-
-/// The robot.toml of a file in `folder`: in it, or above it where it is called runs.
-pub(crate) fn robot_beside(folder: &Path) -> Option<PathBuf> {
-    let in_runs = folder.file_name().is_some_and(|name| name == RUNS);
-    let above = in_runs.then(|| folder.join("..").join(ROBOT));
-    [Some(folder.join(ROBOT)), above].into_iter().flatten().find(|robot| robot.is_file())
 }
 
 /// The project's own layout. Counts between two readings, which a track put there, are no counts of a counter that rolls over:

@@ -1,8 +1,9 @@
 //! The return sheet alone.
 
 use super::Layout;
-use super::csv::{RETURNS, returns_text};
+use super::csv::returns_text;
 use crate::error::DatasetError;
+use crate::file_names::RETURNS;
 use crate::save::{Existing, put};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from umbmark import _umbmark
+from umbmark._arguments import column
 from umbmark._errors import needs
 from umbmark._result import ByValue, Frame
-from umbmark._scores import Data, data_of
+from umbmark._scores import Data, a_model, data_of
 from umbmark._umbmark import Model
 
 if TYPE_CHECKING:
@@ -149,4 +150,8 @@ def apply(
     >>> len(corrected), corrected[0].pose.shape[1], corrected[0].covariance
     (2, 3, None)
     """
-    return CorrectedRuns([Corrected(*run) for run in _umbmark.apply(data_of(data), model, start)])
+    at = column("start", start)
+    if at.size != 3 or not np.isfinite(at).all():
+        raise ValueError(f"start must be three finite numbers (x_m, y_m, theta_rad), got {start!r}")
+    found = _umbmark.apply(data_of(data), a_model(model), (at[0], at[1], at[2]))
+    return CorrectedRuns([Corrected(*run) for run in found])

@@ -36,6 +36,8 @@ Numbers: TypeAlias = (
 
 # As many threads as the command takes.
 MOST_THREADS = 65_535
+# Draws of the flips that a test may take.
+DRAWS = (99, 99_999)
 # A fresh seed stays a whole number in every reader of JSON.
 SEED_BITS = 53
 
@@ -83,7 +85,7 @@ def seed_of(seed: Seed) -> int:
 
 def options_of(size: float, draws: int, seed: Seed) -> tuple[float, int, int]:
     """Give size, draws and seed of tests."""
-    return (real("size", size), integer("draws", draws), seed_of(seed))
+    return (real("size", size), whole("draws", draws, *DRAWS), seed_of(seed))
 
 
 def real(name: str, value: Any) -> float:

@@ -10,7 +10,7 @@ from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, by_name, indices, options_of, real, whole
 from umbmark._progress import Bar, Progress
 from umbmark._result import Printed, Row
-from umbmark._scores import Data, data_of
+from umbmark._scores import Data, data_of, model_of
 from umbmark._umbmark import Dataset, Model, Path
 
 if TYPE_CHECKING:
@@ -172,7 +172,7 @@ def plan(
     asked = by_name("see", {} if see is None else see, "sizes")
     sizes = [(name, real(f'see["{name}"]', value)) for name, value in asked]
     options = options_of(size, draws, seed)
-    whose = _Whose(_read(data), model, path, sigma_m, with_heading, options[2])
+    whose = _Whose(_read(data), model_of(model), path, sigma_m, with_heading, options[2])
     with Bar(progress, 1000, "steps") as bar:
         document, text, markdown, html = _umbmark.plan(
             whose,
@@ -228,7 +228,7 @@ def separate(
     True
     """
     options = options_of(0.05, 999, seed)
-    whose = _Whose(_read(data), model, path, sigma_m, with_heading, options[2])
+    whose = _Whose(_read(data), model_of(model), path, sigma_m, with_heading, options[2])
     document, text = _umbmark.separate(
         (first, second), whose, whole("runs", runs, 0, MOST_RUNS), options, threads
     )

@@ -12,7 +12,7 @@ from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
 from umbmark._progress import Bar, Progress
 from umbmark._result import Row
-from umbmark._scores import Data, data_of, places_of
+from umbmark._scores import Data, a_model, data_of, model_of, places_of
 from umbmark._umbmark import Dataset, Figure, Model
 
 # A study: its name, its data, and the model with its name.
@@ -99,7 +99,7 @@ def plot(
     asked = (
         ", ".join(places_of(data)) or "the data",
         data_of(data),
-        None if model is None else ("the model", model),
+        None if model is None else ("the model", a_model(model)),
     )
     how = (options_of(size, draws, seed), return_poses, n)
     with Bar(progress, 1000, "steps") as bar:
@@ -178,7 +178,8 @@ def _studies(
     data: Data | Mapping[str, Data], model: Model | Mapping[str, Model] | None
 ) -> list[Asked]:
     read = {name: data_of(one) for name, one in _named(data).items()}
-    models = dict(model) if isinstance(model, Mapping) else {"the model": model}
+    given = model if isinstance(model, Mapping) else {"the model": model}
+    models = {name: model_of(one) for name, one in given.items()}
     if len(read) == 1 and len(models) > 1:
         ((_, only),) = read.items()
         asked: list[Asked] = [(name, only, (name, one)) for name, one in models.items() if one]

@@ -9,6 +9,7 @@ from umbmark._arguments import Seed, real, whole
 from umbmark._parameters import Correlations, Parameters, keys_of
 from umbmark._progress import Bar, Progress
 from umbmark._result import Printed, Row
+from umbmark._scores import model_of
 from umbmark._umbmark import Model, Path, Study
 
 if TYPE_CHECKING:
@@ -127,7 +128,7 @@ def tolerance(
     (True, 8.0)
     """
     study = Study(
-        Model() if model is None else model,
+        model_of(model) or Model(),
         path,
         n=1,
         runs=runs,

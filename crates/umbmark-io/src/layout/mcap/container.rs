@@ -6,6 +6,7 @@
 
 use super::super::messages::{Channel, Container, Contents, Definition, LONGEST, Opened, Record, Stop, Visit};
 use crate::error::quoted;
+use crate::file_names::ROBOT;
 use mcap::McapError;
 use mcap::records::op;
 use mcap::sans_io::{
@@ -24,9 +25,8 @@ const HEAD: usize = 9;
 /// Start of a chunk: its times and its unpacked size.
 const CHUNK_SIZES: usize = 24;
 
-/// Metadata with the robot of a simulated log, and its key.
+/// Metadata with the robot of a simulated log.
 pub(super) const METADATA: &str = "umbmark";
-pub(super) const ROBOT: &str = "robot.toml";
 
 /// An open file.
 struct McapFile {

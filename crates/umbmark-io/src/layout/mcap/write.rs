@@ -6,10 +6,11 @@
 //! gives the same bytes.
 
 use super::super::messages::{JOINT_STATE, KnownType, MARKER_ARRAY, ODOMETRY, PATH, POSE_STAMPED, TF};
-use super::container::{METADATA, ROBOT};
+use super::container::METADATA;
 use super::parts::{Cdr, header, numbers, orientation};
 use super::scene;
 use crate::RobotFile;
+use crate::file_names::ROBOT;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapResult, WriteOptions, Writer};
 use std::collections::BTreeMap;
