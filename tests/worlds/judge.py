@@ -138,10 +138,11 @@ def looked_at(answers: Json) -> str:
 def near(moment: tuple[str, float], events: list[Json]) -> bool:
     """Whether it is near an event of that run, or while that lasts."""
     run, at = moment
+    own = [one for one in events if one["run"] == run]
+    begins = [one["since_s"] if "since_s" in one else one["time_s"] for one in own]
     return any(
-        one["run"] == run
-        and one.get("since_s", one["time_s"]) - NEAR_S <= at <= one["time_s"] + NEAR_S
-        for one in events
+        since - NEAR_S <= at <= one["time_s"] + NEAR_S
+        for since, one in zip(begins, own, strict=True)
     )
 
 

@@ -422,7 +422,7 @@ WRONG: dict[str, tuple[Callable[[umbmark.Dataset], object], str]] = {
         "trial must be a whole number, got 0.5 (float)",
     ),
     "name of an effect": (
-        lambda _: umbmark.Model().add(3),  # type: ignore[call-overload]
+        lambda _: umbmark.Model().add(3),  # type: ignore[arg-type]
         "name must be that of an effect, a function, or a suggestion, got 3 (int)",
     ),
     "number of a run": (
@@ -430,7 +430,7 @@ WRONG: dict[str, tuple[Callable[[umbmark.Dataset], object], str]] = {
         "number must be a whole number, got 'one' (str)",
     ),
     "index": (
-        lambda data: data[1.5],
+        lambda data: data[1.5],  # type: ignore[call-overload]
         "index must be a whole number, got 1.5 (float)",
     ),
     "place": (
