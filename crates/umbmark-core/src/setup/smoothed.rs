@@ -62,7 +62,7 @@ fn filtered(
     let rolled: Vec<_> = seen.iter().map(|seen| seen.rolled.filtered(time_constant)).collect();
     let earlier = |late: &Late| Late { delay: late.delay - time_constant, ..*late };
     let mut clocks: Vec<Late> = seen.iter().map(|seen| earlier(&seen.late)).collect();
-    let mut agreement = agreement.clone();
+    let mut agreement = *agreement;
     for _ in 0..ROUNDS {
         let runs = || seen.iter().zip(&rolled);
         let beside = runs().zip(&clocks).flat_map(|((seen, rolled), late)| clock::beside(&seen.windows, rolled, late));
