@@ -25,6 +25,7 @@ register! {
     circle,
     straight,
     spin,
+    triangle,
     fixed_square,
     fixed_circle,
     diagonal_square,
