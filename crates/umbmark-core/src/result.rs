@@ -49,6 +49,7 @@ results! {
     sensitivity: Sensitivity;
     setup;
     solution: Solution;
+    spin: Spin;
     study: MonteCarlo;
     survey: Survey;
     sweep: Sweep;

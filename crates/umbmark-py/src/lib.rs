@@ -61,6 +61,7 @@ module! {
     score: score_arrays, score_dataset;
     sensitivity: Sobol, sensitivity;
     simulate: simulate;
+    spin: spin;
     stated;
     sweep: sweep;
     tolerance: tolerance;
