@@ -80,8 +80,6 @@ verbs! {
     Init(init),
     /// List the known error sources, or explain one
     Effects(effects),
-    /// What a turn on the spot takes
-    Spin(spin),
     /// Print shell completions or the manual page
     Completions(completions),
 }

@@ -49,7 +49,6 @@ results! {
     sensitivity: Sensitivity;
     setup;
     solution: Solution;
-    spin: Spin;
     study: MonteCarlo;
     survey: Survey;
     sweep: Sweep;

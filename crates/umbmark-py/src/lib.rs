@@ -61,7 +61,6 @@ module! {
     score: score_arrays, score_dataset;
     sensitivity: Sobol, sensitivity;
     simulate: simulate;
-    spin: spin;
     stated;
     sweep: sweep;
     tolerance: tolerance;

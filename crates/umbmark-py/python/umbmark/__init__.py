@@ -45,7 +45,7 @@ from umbmark._changed import Changed, changed
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._conditions import Conditions, conditions
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
-from umbmark._documents import Correction, Effect, Setup, Spin
+from umbmark._documents import Correction, Effect, Setup
 from umbmark._each import Each, each, fleet
 from umbmark._errors import MissingDependencyError
 from umbmark._export import Exported, export
@@ -91,7 +91,6 @@ from umbmark._umbmark import (
     load_dataset,
     presets,
     simulate,
-    spin,
 )
 from umbmark._unlisted import Unlisted
 from umbmark._warnings import ConversionWarning, UmbmarkWarning
@@ -147,7 +146,6 @@ __all__ = [
     "Setup",
     "Shape",
     "Solution",
-    "Spin",
     "Study",
     "Survey",
     "Sweep",
@@ -191,7 +189,6 @@ __all__ = [
     "separate",
     "simulate",
     "solve",
-    "spin",
     "survey",
     "sweep",
     "tolerance",

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from umbmark._arguments import Numbers, Seed
-from umbmark._documents import Effect, Repeated, Spin, Suggestion, UnlistedLaw
+from umbmark._documents import Effect, Repeated, Suggestion, UnlistedLaw
 from umbmark._keys import EffectKeys, EffectName, MotionKeys, PathKeys, RobotKeys, Shape
 
 __all__ = [
@@ -54,7 +54,6 @@ __all__ = [
     "separate",
     "simulate",
     "solve",
-    "spin",
     "survey",
     "sweep",
     "tolerance",
@@ -388,7 +387,6 @@ def load_dataset(
     place: Place | Sequence[Place], *, ticks: str | None = None, reference: str | None = None
 ) -> Dataset: ...
 def inspect(data: Dataset, place: str) -> tuple[str, str]: ...
-def spin(robot: Robot) -> Spin: ...
 def effects() -> dict[str, Effect]: ...
 def formula_variables() -> list[str]: ...
 def presets() -> dict[str, tuple[Model, Path]]: ...
