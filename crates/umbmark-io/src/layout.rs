@@ -31,7 +31,7 @@ macro_rules! layouts {
     };
 }
 
-layouts! { csv, mcap, rosbag2, rosbag, optiodom, planar, tum, returns, motive }
+layouts! { csv, mcap, rosbag2, rosbag, optiodom, tum, returns, motive }
 
 /// How some files are recognised, read and written. A layout does what its file says that it does.
 #[derive(Clone, Copy, Debug)]
