@@ -40,7 +40,6 @@ register! {
     correlations,
     monte_carlo,
     runs,
-    run_lengths,
 }
 
 /// A p-value in a sentence or a table: "0.013", and "< 0.001" below that.
