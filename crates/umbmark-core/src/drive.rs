@@ -18,7 +18,6 @@ macro_rules! every_drive {
             Omni4(omni4::Omni4Drive),
             DeadWheels(dead_wheels::DeadWheelsDrive),
             SkidSteer(skid_steer::SkidSteerDrive),
-            Tracked(tracked::TrackedDrive),
         }
     };
 }

@@ -176,8 +176,7 @@ impl DriveKinds {
     pub const ALL: DriveKinds = DriveKinds((1 << DriveKind::ALL.len()) - 1);
 
     /// Two wheels, or two rows of wheels, that do not steer: the robot turns by the difference of their speeds.
-    pub const DIFFERENTIAL: DriveKinds =
-        DriveKinds::of(DriveKind::Differential).and(DriveKind::SkidSteer).and(DriveKind::Tracked);
+    pub const DIFFERENTIAL: DriveKinds = DriveKinds::of(DriveKind::Differential).and(DriveKind::SkidSteer);
 
     /// One kind.
     pub const fn of(kind: DriveKind) -> DriveKinds {
