@@ -25,7 +25,6 @@ register! {
     circle,
     straight,
     spin,
-    triangle,
     fixed_square,
     fixed_circle,
     diagonal_square,
