@@ -113,7 +113,6 @@ register! {
     acceleration_slip,
     turn_slip,
     turn_slip_rate,
-    slow_turn,
     direction_dependent_wheelbase,
     caster_kick,
     leg_kick,
