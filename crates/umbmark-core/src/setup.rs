@@ -7,7 +7,8 @@
 //! 1. the delay at which the sizes of both motions correlate best (`clock`);
 //! 2. the reading of columns and headings under which both motions agree (`agreement`), with robust weights for the windows;
 //! 3. delay and rate of the clock run by run, and everything else again with these;
-//! 4. wrong poses and jumps, found together (`disturbances`), and jumps that last (`stretches`).
+//! 4. wrong poses and jumps, found together (`disturbances`), beside a delay or a filter of the reference (`smoothed`), and jumps that last
+//!    (`stretches`).
 //!
 //! Return errors are examined separately (`returns`): runs far from the others, and columns in another unit.
 

@@ -486,7 +486,8 @@ class Dataset:
         --------
         >>> import umbmark
         >>> cw, ccw = [[-0.21, -0.19, -0.05]], [[0.02, 0.01, 0.01], [0.01, -0.02, 0.02]]
-        >>> data = umbmark.Dataset.from_arrays(cw, ccw, robot=umbmark.Robot.labmate(), path=umbmark.Path.umbmark())
+        >>> robot, path = umbmark.Robot.labmate(), umbmark.Path.umbmark()
+        >>> data = umbmark.Dataset.from_arrays(cw, ccw, robot=robot, path=path)
         >>> data
         Dataset(TRC LabMate, square of 16.000000 m: 1 cw + 2 ccw runs, 0 with ticks)
         """
@@ -539,7 +540,8 @@ class Dataset:
         Examples
         --------
         >>> import umbmark
-        >>> frame = {"run": ["cw_01"] * 3, "t": [0, 1, 2], "left": [0, 100, 200], "right": [0, 100, 200]}
+        >>> counts = [0, 100, 200]
+        >>> frame = {"run": ["cw_01"] * 3, "t": [0, 1, 2], "left": counts, "right": counts}
         >>> umbmark.Dataset.from_frame(frame, t="t", ticks=("left", "right"), pose=None)
         Dataset(unknown robot, unknown path: 1 cw + 0 ccw runs, 1 with ticks)
         """
