@@ -6,6 +6,7 @@ use umbmark_core::geometry::Pose2;
 use umbmark_io::RobotFile;
 use umbmark_io::export::{Export, ExportError, TARGETS, UrdfFile, Usual};
 
+use crate::arguments::model;
 use crate::model::Model;
 use crate::path::Path;
 use crate::{WORDS, choice, refused};
@@ -14,7 +15,7 @@ use crate::{WORDS, choice, refused};
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn export(
-    model: &Model,
+    #[pyo3(from_py_with = model)] model: Model,
     to: &str,
     path: Option<&Path>,
     controller: Option<String>,

@@ -17,7 +17,7 @@ use umbmark_core::result::{self, MonteCarlo, NoiseFree, Told};
 use umbmark_core::simulate::{Odometry, Phase};
 use umbmark_io::checkpoint::Keeper;
 
-use crate::arguments::{column, seed, threads, whole};
+use crate::arguments::{column, model, seed, threads, whole};
 use crate::checkpoint::{CheckpointOptions, unusable};
 use crate::model::Model;
 use crate::path::Path;
@@ -69,7 +69,7 @@ impl Study {
     #[pyo3(signature = (model, path=None, *, n=1000, runs=None, seed=1, odometry="robot", update="arc", phase="random"))]
     #[allow(clippy::too_many_arguments)]
     fn new(
-        model: &Model,
+        #[pyo3(from_py_with = model)] model: Model,
         path: Option<&Path>,
         #[pyo3(from_py_with = trials)] n: u64,
         runs: Option<&Bound<'_, PyAny>>,
@@ -78,7 +78,7 @@ impl Study {
         update: &str,
         phase: &str,
     ) -> PyResult<Study> {
-        let Model { model, draws, .. } = model.clone();
+        let Model { model, draws, .. } = model;
         let base = core::Study::new(model, n, seed);
         let sampled = |update| match base.robot().encoder.rate() {
             Some(rate) => Odometry::Sampled { rate, update },

@@ -36,7 +36,7 @@ Numbers: TypeAlias = (
 
 # As many threads as the command takes.
 MOST_THREADS = 65_535
-# Draws of the flips that a test may take.
+# Numbers of simulated tests that a p-value may come from, as the command takes them.
 DRAWS = (99, 99_999)
 # A fresh seed stays a whole number in every reader of JSON.
 SEED_BITS = 53

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from umbmark import _umbmark
-from umbmark._scores import a_model
 
 if TYPE_CHECKING:
     from umbmark._umbmark import Model, Path
@@ -88,6 +87,4 @@ def export(
     wheels = None if joints is None else list(joints)
     edited = None if urdf is None else (os.fspath(urdf), wheels)
     usual = [speed_m_s, turn_rate_rad_s, rate_hz]
-    return Exported(
-        *_umbmark.export(a_model(model), to, path, controller, edited, usual, start, force)
-    )
+    return Exported(*_umbmark.export(model, to, path, controller, edited, usual, start, force))

@@ -14,7 +14,6 @@ from umbmark._arguments import Seed
 from umbmark._errors import needs
 from umbmark._progress import Bar, Progress
 from umbmark._result import Printed, Row
-from umbmark._scores import a_model
 from umbmark._umbmark import Ensemble, Model, Path, Study
 
 if TYPE_CHECKING:
@@ -146,14 +145,7 @@ def monte_carlo(
     if n is None:
         n = 1000 if until_std_error_m is None else MOST_UNTIL
     study = Study(
-        a_model(model),
-        path,
-        n=n,
-        runs=runs,
-        seed=seed,
-        odometry=odometry,
-        update=update,
-        phase=phase,
+        model, path, n=n, runs=runs, seed=seed, odometry=odometry, update=update, phase=phase
     )
     with Bar(progress, n, "trials") as bar:
         ensemble, trials, trials_per_s = study.run(

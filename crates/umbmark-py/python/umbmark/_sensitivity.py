@@ -9,7 +9,6 @@ from umbmark._arguments import Seed
 from umbmark._parameters import Correlations, Parameters, keys_of
 from umbmark._progress import Bar, Progress
 from umbmark._result import Printed, Row
-from umbmark._scores import a_model
 from umbmark._umbmark import Model, Path, Study
 
 if TYPE_CHECKING:
@@ -109,7 +108,7 @@ def sensitivity(
     if effort is None:
         effort = EFFORT.get(method, 1)
     study = Study(
-        a_model(model),
+        model,
         path,
         n=effort,
         runs=runs,

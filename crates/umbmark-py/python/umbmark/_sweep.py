@@ -15,7 +15,6 @@ from umbmark._arguments import Seed, by_name, integer, real
 from umbmark._errors import needs
 from umbmark._progress import Bar, Progress
 from umbmark._result import Printed, Row
-from umbmark._scores import a_model
 from umbmark._umbmark import Model, Path, Study
 
 if TYPE_CHECKING:
@@ -137,14 +136,7 @@ def sweep(
     ['0.18 m', '0.00 m', '0.18 m']
     """
     study = Study(
-        a_model(model),
-        path,
-        n=n,
-        runs=runs,
-        seed=seed,
-        odometry=odometry,
-        update=update,
-        phase=phase,
+        model, path, n=n, runs=runs, seed=seed, odometry=odometry, update=update, phase=phase
     )
     given = [_axis(name, axis) for name, axis in by_name("axes", axes, "(first, last, count)")]
     points = math.prod(count for *_, count in given)
