@@ -29,6 +29,8 @@ pub struct Parameter {
 pub enum Role {
     /// It does nothing at 0.
     Size,
+    /// It does nothing at 0, and usually it is 1: all.
+    Share,
     /// It does nothing at 1.
     Ratio,
     /// A length, rate or threshold. It changes nothing by itself, and no value of it does nothing.
@@ -102,6 +104,11 @@ impl Parameter {
         meaning: &'static str,
     ) -> Parameter {
         Parameter::new(Role::Size, [name, flag, unit], [0.0, typical], bounds, meaning)
+    }
+
+    /// A share that does nothing where it is 0, its value where none is given, and that is 1 where it is all, as it usually is.
+    pub const fn share(name: &'static str, flag: &'static str, bounds: (f64, f64), meaning: &'static str) -> Parameter {
+        Parameter::new(Role::Share, [name, flag, ""], [0.0, 1.0], bounds, meaning)
     }
 
     /// A pure number that does nothing where it is 1, its value where none is given; `typical` is a usual departure from 1.
@@ -178,7 +185,7 @@ impl Parameter {
     /// The value at which it does nothing, where there is one.
     pub fn nothing(&self) -> Option<f64> {
         match self.role {
-            Role::Size | Role::Scatter | Role::Count => Some(0.0),
+            Role::Size | Role::Share | Role::Scatter | Role::Count => Some(0.0),
             Role::Ratio => Some(1.0),
             Role::Shape | Role::Choice(_) => None,
         }

@@ -117,6 +117,16 @@ impl Part {
     pub(crate) fn is_credible(&self) -> bool {
         self.effect.entry().is_none_or(|entry| (entry.is_credible)(&self.values))
     }
+
+    /// The name of its [share](Role::Share), where it has one.
+    pub(crate) fn share(&self) -> Option<&'static str> {
+        self.effect.parameters().iter().find(|parameter| parameter.role == Role::Share).map(|parameter| parameter.name)
+    }
+
+    /// Whether its share is kept as it is: its shape then is its size.
+    fn is_whole(&self) -> bool {
+        self.share().is_some_and(|share| self.fixed.contains(&share))
+    }
 }
 
 /// A chain of effects, in the order of the catalogue; those that are not in it come last.
@@ -370,13 +380,15 @@ impl Model {
 
     /// Which of the [values](Model::values) are shapes: numbers (a length, a threshold) without influence while their effect is zero.
     pub fn shapes(&self) -> Vec<usize> {
-        let shapes = self.parameters().enumerate().filter(|(_, parameter)| parameter.role == Role::Shape);
-        shapes.map(|(value, _)| value).collect()
+        let shapes = self.parameters().enumerate().filter(|(_, (_, parameter))| parameter.role == Role::Shape);
+        shapes.filter(|(_, (part, _))| !part.is_whole()).map(|(value, _)| value).collect()
     }
 
-    /// The value of one of the [values](Model::values), given by its index, at which its effect has no influence; `None` for a shape.
+    /// The value of one of the [values](Model::values), given by its index, at which its effect has no influence; `None` for a shape. A
+    /// time constant is the size of an effect whose share is kept.
     pub(crate) fn nothing(&self, place: usize) -> Option<f64> {
-        self.parameters().nth(place)?.nothing()
+        let (part, parameter) = self.parameters().nth(place)?;
+        parameter.nothing().or_else(|| part.is_whole().then_some(0.0))
     }
 
     /// The usual size of one of the [values](Model::values), given by its index, where it is a shape of an effect of the catalogue.
@@ -390,8 +402,8 @@ impl Model {
     }
 
     /// What the [values](Model::values) are values of.
-    fn parameters(&self) -> impl Iterator<Item = &Parameter> {
-        self.parts.iter().flat_map(|part| part.effect.parameters())
+    fn parameters(&self) -> impl Iterator<Item = (&Part, &Parameter)> {
+        self.parts.iter().flat_map(|part| part.effect.parameters().iter().map(move |parameter| (part, parameter)))
     }
 
     /// The same effects with some of the [values](Model::values), named by their place, replaced.

@@ -22,11 +22,9 @@ impl Effect for ReferenceFilter {
         title: "low-pass filter of the reference",
         acts_on: ActsOn::Reference,
         parameters: &[
-            Parameter::size(
+            Parameter::share(
                 "share",
                 "reference-filter",
-                "",
-                1.0,
                 (-10.0, 10.0),
                 "share of the pose that is filtered; 1 where the whole pose is",
             ),

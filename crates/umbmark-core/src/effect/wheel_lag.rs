@@ -18,11 +18,9 @@ impl Effect for WheelLag {
         title: "wheels that follow late, counts are commands",
         acts_on: ActsOn::Odometry,
         parameters: &[
-            Parameter::size(
+            Parameter::share(
                 "share",
                 "wheel-lag",
-                "",
-                1.0,
                 (-10.0, 10.0),
                 "share of what is counted that the wheels follow late; 1 where counts are commands",
             ),

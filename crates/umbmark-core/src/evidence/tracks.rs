@@ -6,6 +6,7 @@ mod packed;
 mod possible;
 mod silent;
 mod system;
+mod whole;
 
 use super::{Estimate, Evidence, Fit, FitError, Level, correlations, robot_of};
 use crate::dataset::Dataset;
@@ -21,6 +22,7 @@ pub(crate) use packed::Packed;
 pub(crate) use possible::{fit_possible, is_possible};
 pub(crate) use silent::{last_part, silent, without, without_silent_taken};
 pub(crate) use system::{Projected, System, Unit};
+pub(crate) use whole::whole;
 
 /// The tracks of a dataset.
 pub(crate) fn of(data: &Dataset) -> Result<Observed, FitError> {
@@ -62,7 +64,7 @@ impl Evidence for Observed {
 
 /// Fits the free parameters of a model as they are reported; those of first effects that the motion denies are not fitted.
 pub(crate) fn fit_alone(observed: &Observed, model: &Model) -> Result<Alone, FitError> {
-    let (fitted, _) = without_silent_taken(fit_possible(observed, model)?)?;
+    let (fitted, _) = without_silent_taken(whole(fit_possible(observed, model)?))?;
     Ok(trusted(fitted)?)
 }
 

@@ -3,7 +3,7 @@
 use super::examination::Examination;
 use crate::diagnose::suspect::Suspect;
 use crate::effect::{Law, Model, Part};
-use crate::evidence::tracks::{Alone, estimates};
+use crate::evidence::tracks::{Alone, estimates, whole};
 use crate::evidence::{Estimate, FitError};
 use crate::likelihood::{Fitted, Noise};
 use crate::parameter::Role;
@@ -17,7 +17,7 @@ const LIKELIER: f64 = 10.0;
 
 /// The model of an examination with one more suspect, fitted: first its sizes, then also its shapes if its size is significant.
 pub(crate) fn grown(exam: &Examination, suspect: &Suspect) -> Result<Fitted, FitError> {
-    fitted(exam, &with(exam.fitted.model.clone(), suspect)?, suspect.best)
+    Ok(whole(fitted(exam, &with(exam.fitted.model.clone(), suspect)?, suspect.best)?))
 }
 
 /// The model of an examination with one more law outside the catalogue, fitted in the same way, and the name of the law there.

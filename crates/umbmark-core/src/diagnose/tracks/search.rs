@@ -12,7 +12,7 @@ use crate::diagnose::suspect::Suspect;
 use crate::effect::{About, ActsOn, CATALOGUE, Law, Model};
 use crate::evidence::FitError;
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, silent, trusted, without, without_silent_taken};
-use crate::likelihood::Fitted;
+use crate::likelihood::{Fitted, Observed};
 use crate::watch::{Reached, Watch};
 use std::borrow::Cow;
 
@@ -191,17 +191,34 @@ fn is_held(fitted: &Fitted, lag: &str) -> Result<bool, FitError> {
     Ok(is_incredible && has_delay && !only_smooths(fitted, lag)?)
 }
 
-/// Whether wheels or poses are said to follow late, and the reference to be early by as much: together they only smooth the counts, and with
-/// them what whole counts hide.
+/// Whether wheels or poses are said to follow late, and the reference to be early by as much, or by so much that no pose moves by more than a
+/// count against a delay alone: together they only smooth the counts, and with them what whole counts hide.
 fn only_smooths(fitted: &Fitted, lag: &str) -> Result<bool, FitError> {
     let late = |model: &Model| Some(model.get(lag, "share")? * model.get(lag, "time_constant_s")?);
-    if late(&fitted.model).is_none() {
-        return Ok(false);
+    let Some(own) = late(&fitted.model) else { return Ok(false) };
+    let mut delayed = fitted.model.without(lag);
+    let delay = fitted.model.get(DELAY, "delay_s").unwrap_or(0.0);
+    delayed.set(DELAY, "delay_s", delay + own)?;
+    if is_within_counts(&fitted.observed, [&fitted.model, &delayed]) {
+        return Ok(true);
     }
     let mut with = fitted.model.clone();
     with.add(DELAY)?.free = true;
     let with = fitted.observed.fit(&with, &fitted.noise, &[])?.model;
     Ok(late(&with).zip(with.get(DELAY, "delay_s")).is_some_and(|(late, delay)| (late + delay).abs() < SMOOTH * late))
+}
+
+/// Whether all poses by two models are within a count of the wheels of each other.
+fn is_within_counts(observed: &Observed, models: [&Model; 2]) -> bool {
+    let [one, other] = models.map(Model::chain);
+    observed.whole().runs.iter().all(|run| {
+        let count = run.counts[0].max(run.counts[1]);
+        let apart = run.residuals(&one).into_iter().zip(run.residuals(&other));
+        apart.into_iter().all(|(a, b)| {
+            let [x, y, turned] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+            x.hypot(y) < count && turned.abs() * run.wheelbase < 2.0 * count
+        })
+    })
 }
 
 /// An effect among those `asked` that is hardly separated from E_d, E_b and E_s and does not pay for it, and the model as it is written
@@ -503,12 +520,19 @@ impl Search {
     /// there is one.
     ///
     /// An effect that does harm alone is not refused at once: where two are missing, what the second does may hide in the values until
-    /// both are there.
+    /// both are there. Nor does an effect do harm with which poses are predicted better, and runs as well, beside values that are fitted alike:
+    /// two models may be written with values that are fitted under other noise, and the way of few runs then is off by chance.
     fn undo_harm(&mut self) -> bool {
         let errors: Vec<Misses> = self.written.iter().map(Alone::left_out).collect();
-        let Some(before) = errors.iter().rposition(|before| errors[errors.len() - 1].harms(before)) else {
-            return false;
+        let does_harm = |effect: &str| {
+            let [with, without] = with_and_without(self.last(), effect);
+            with.harms(&without) || with.white_fall(&without) < LEAST_GAIN
         };
+        let harmful = |(place, before): (usize, &Misses)| {
+            let added = self.added.get(place)?.suspect.best;
+            (errors[errors.len() - 1].harms(before) && (!self.keeps(added) || does_harm(added))).then_some(place)
+        };
+        let Some(before) = errors.iter().enumerate().rev().find_map(harmful) else { return false };
         let effect = self.added[before].suspect.best;
         let model = self.exams[before + 1].fitted.model.clone();
         self.refuse(&model, effect);

@@ -1,0 +1,61 @@
+//! Shares that runs do not tell from all.
+//!
+//! A delay beside a filter of a part of the poses looks nearly like a longer delay beside a filter of a smaller part: the mean lag is told well,
+//! its parts are not. All of the poses are filtered, or none, so the share is 1 where the runs do not deny it; the delay and the time constant
+//! then are told as well as the lag.
+
+use super::{Alone, estimates};
+use crate::effect::{Model, Part};
+use crate::likelihood::Fitted;
+
+/// A share of its own is fitted only where AICc falls by this against a share of 1.
+const LIKELIER: f64 = 10.0;
+
+/// What a part of the lag may be taken for.
+const DELAY: (&str, &str) = ("reference_delay", "delay_s");
+const TIME: &str = "time_constant_s";
+
+/// A fit with the shares that it does not tell from 1 kept at 1.
+pub(crate) fn whole(mut fitted: Fitted) -> Fitted {
+    let is_told = |part: &&Part| part.free && part.share().is_some_and(|share| !part.fixed.contains(&share));
+    let parts: Vec<Part> = fitted.model.parts().iter().filter(is_told).cloned().collect();
+    for part in parts {
+        let aicc = |fitted: &Fitted| Alone::new(fitted.clone()).criteria().0;
+        let tried = starts(&fitted.model, &part).into_iter().filter_map(|start| {
+            let fit = fitted.observed.fit(&start, &fitted.noise, &[]).ok()?;
+            let is_fitted = estimates(&fit).iter().all(|own| own.standard_error.is_finite());
+            let is_allowed = fit.observed.tracks().all(|track| track.check(&fit.model).is_ok());
+            (is_fitted && is_allowed).then(|| (aicc(&fit), fit))
+        });
+        if let Some((likelier, whole)) = tried.min_by(|a, b| a.0.total_cmp(&b.0))
+            && likelier < aicc(&fitted) + LIKELIER
+        {
+            fitted = Fitted { taken: fitted.taken, usual_noise: fitted.usual_noise, ..whole };
+        }
+    }
+    fitted
+}
+
+/// The model with the share of a part kept at 1: with the lag that it has for its time constant and no delay beside it, and with the time
+/// constant that it has, where the delay takes what the lag is then too much.
+fn starts(model: &Model, part: &Part) -> Vec<Model> {
+    let name = part.effect.name();
+    let Some((share, time)) = part.share().and_then(|share| Some((share, model.get(name, TIME)?))) else {
+        return Vec::new();
+    };
+    let late = model.get(name, share).unwrap_or(1.0) * time;
+    let is_delayed = |part: &Part| part.effect.name() == DELAY.0 && part.free;
+    let delay = model.parts().iter().any(is_delayed).then(|| model.get(DELAY.0, DELAY.1)).flatten();
+    let lag = late + delay.unwrap_or(0.0);
+    let with = |time: f64| {
+        let mut whole = model.clone();
+        whole.set(name, share, 1.0).ok()?;
+        whole.set(name, TIME, time).ok()?;
+        whole.fix(name, share).ok()?;
+        if delay.is_some() {
+            whole.set(DELAY.0, DELAY.1, lag - time).ok()?;
+        }
+        Some(whole)
+    };
+    [lag, time].into_iter().filter_map(with).collect()
+}
