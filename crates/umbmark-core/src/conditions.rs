@@ -18,13 +18,12 @@ mod between;
 mod clusters;
 mod numbers;
 mod of_runs;
-mod stated;
 mod words;
 
 #[cfg(test)]
 mod tests;
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, stated};
 use crate::diagnose::Options;
 use crate::effect::Model;
 use crate::evidence::{FitError, Level, robot_of};
@@ -34,10 +33,10 @@ use ask::All;
 use clusters::Combined;
 use of_runs::Runs;
 
+pub use crate::dataset::stated::{Condition, Kind, SESSION};
 pub use between::Between;
 pub(crate) use between::between;
 pub use numbers::Number;
-pub use stated::{Condition, Kind, SESSION};
 
 /// A difference as large as this share of tests would have found is told as what could be seen.
 pub const POWER: f64 = 0.8;

@@ -3,8 +3,10 @@
 //! Files are read and written by the crate `umbmark-io`.
 
 mod reference_frame;
+pub(crate) mod stated;
 
 pub use reference_frame::ReferenceFrame;
+pub use stated::Levels;
 
 pub use crate::run::{Mended, ReferencePose, ReturnError, Run, TickLog};
 

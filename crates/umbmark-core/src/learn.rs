@@ -15,7 +15,7 @@ mod tracks;
 pub(crate) use ends::criteria as criteria_of_ends;
 pub use gears::{GearCalibration, GearError, calibrate_gears};
 pub use kept::Kept;
-pub use story::{Error, Learnt, Step};
+pub use story::{Crossed, Error, Learnt, Step};
 
 use crate::dataset::Dataset;
 use crate::diagnose::Options;

@@ -8,7 +8,7 @@ use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Experiment, Options, Verdict};
 use umbmark_core::effect::Model;
 use umbmark_core::evidence::Level;
-use umbmark_core::learn::{Learnt, Step, learn_from};
+use umbmark_core::learn::{Crossed, Learnt, Step, learn_from};
 use umbmark_core::result;
 use umbmark_core::solve::Solution;
 
@@ -96,8 +96,10 @@ pub fn told(data: &Dataset, solution: &Solution, options: &Options, terminal: bo
 fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> String {
     let robot = data.robot.as_ref().map_or("", |robot| robot.name.as_str());
     let mut text = format!("Model learnt for {robot}\n\n");
-    let header = ["added", "p", "error [mm]", "left out [mm]", "[deg]", "AICc"];
-    text += &table(&header, learnt.steps.iter().map(row));
+    let by: Vec<String> = learnt.conditions.iter().map(|own| format!("by {} [mm]", own.names[0])).collect();
+    let left = ["added", "p", "error [mm]", "left out [mm]"];
+    let header: Vec<&str> = left.into_iter().chain(by.iter().map(String::as_str)).chain(["[deg]", "AICc"]).collect();
+    text += &table(&header, learnt.steps.iter().map(|step| row(step, by.len())));
     text += "\n\n";
     let logs = || data.runs.iter().filter_map(|run| run.log.as_ref());
     let of = match learnt.diagnosis.level {
@@ -110,7 +112,8 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     };
     let legend = format!(
         "error: root mean square distance of {of} from the model's, in the fitted runs. left out: cross-validated error, of runs \
-         that were used neither to choose effects nor to fit. AICc is not used for decisions."
+         that were used neither to choose effects nor to fit. {}AICc is not used for decisions.",
+        by_conditions(learnt)
     );
     text += &hanging("", 0, &legend);
     text += "\n";
@@ -122,6 +125,13 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     text += &hanging("verdict", 10, verdict);
     let diagnosis = &learnt.diagnosis;
     text += &(faults_text(&diagnosis.setup) + &reasons_text(&diagnosis.reasons) + &taken_text(&diagnosis.taken));
+    for own in &learnt.conditions {
+        for (effect, level) in &own.only {
+            let said = format!("{effect} by the runs of {} {level} alone; on those of another it is not known", own.names[0]);
+            text += &hanging("told", 10, &said);
+        }
+    }
+    text += &learnt.untested().map_or_else(String::new, |others| hanging("untested", 10, &others));
     for step in learnt.steps.iter().filter(|s| s.class.len() > 1) {
         text += &hanging("class", 10, &format!("{} cannot be distinguished here", step.class.join(", ")));
     }
@@ -155,7 +165,16 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
 const BY_A_LAW: &str =
     "explained, by a law that the catalogue does not have (added as a formula); no test shows a further effect";
 
-fn row(step: &Step) -> Vec<String> {
+/// What the columns of conditions show, for the legend.
+fn by_conditions(learnt: &Learnt) -> String {
+    let of = |own: &Crossed| {
+        let name = &own.names[0];
+        format!("by {name}: the same of the runs of each {name}, by a model fitted to those of the others. ")
+    };
+    learnt.conditions.iter().map(of).collect()
+}
+
+fn row(step: &Step, conditions: usize) -> Vec<String> {
     let others = step.class.len().saturating_sub(1);
     let added = match step.added {
         None => "nominal robot".to_owned(),
@@ -163,12 +182,10 @@ fn row(step: &Step) -> Vec<String> {
         Some(effect) => format!("+ {effect}"),
     };
     let degrees = |heading: Option<f64>| heading.map_or("-".to_owned(), |h| format!("{:.2}", h.to_degrees()));
-    vec![
-        added,
-        step.p_adjusted.map_or("-".into(), p_text),
-        format!("{:.1}", 1e3 * step.error.position),
-        format!("{:.1}", 1e3 * step.held_out.position),
-        degrees(step.held_out.heading),
-        step.aicc.map_or("-".into(), |aicc| format!("{aicc:.1}")),
-    ]
+    let errors = [&step.error, &step.held_out].into_iter().chain(step.elsewhere.iter().take(conditions));
+    let mut row = vec![added, step.p_adjusted.map_or("-".into(), p_text)];
+    row.extend(errors.map(|error| format!("{:.1}", 1e3 * error.position)));
+    row.push(degrees(step.held_out.heading));
+    row.push(step.aicc.map_or("-".into(), |aicc| format!("{aicc:.1}")));
+    row
 }

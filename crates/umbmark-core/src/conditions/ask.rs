@@ -3,8 +3,8 @@
 use super::between::between;
 use super::clusters::{Cluster, Combined, Regression};
 use super::of_runs::OfRun;
-use super::stated::{Condition, Kind, SESSION};
 use super::{Against, Asked, AskedCondition, AtLevel, Difference, Estimate, Number, Shared};
+use crate::dataset::stated::{Condition, Kind, SESSION};
 use crate::diagnose::Options;
 use nalgebra::{DMatrix, DVector};
 

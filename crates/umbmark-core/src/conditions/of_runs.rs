@@ -6,9 +6,9 @@
 
 use super::ConditionsError;
 use super::numbers::Number;
-use super::stated::Condition;
 use crate::changed::is_of_test;
 use crate::dataset::Dataset;
+use crate::dataset::stated::Condition;
 use crate::effect::Model;
 use crate::evidence::ends::names;
 use crate::evidence::tracks::{self, Projected, System, fit, trusted, without_silent_taken};

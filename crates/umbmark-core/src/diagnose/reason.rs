@@ -59,6 +59,15 @@ pub enum Reason {
         /// The effect that was added last to the simpler model; `None` for the nominal robot.
         up_to: Option<&'static str>,
     },
+    /// Fitted to the runs of the other levels of a condition, the model misses those of a level by more than it misses single runs left out.
+    WorseElsewhere {
+        /// The condition.
+        condition: String,
+        /// Of runs of a level that was left out \[m\].
+        elsewhere: f64,
+        /// Of single runs that were left out \[m\].
+        left_out: f64,
+    },
     /// The model misses the runs that it was fitted to by more than the nominal robot does.
     FarFromTheRuns {
         /// \[m\]
@@ -219,6 +228,12 @@ impl Reason {
                 1e3 * left_out,
                 up_to.map_or("the nominal robot".into(), |effect| format!("the model up to {effect}")),
                 1e3 * simpler
+            ),
+            Reason::WorseElsewhere { condition, elsewhere, left_out } => format!(
+                "runs of a {condition} are missed by {:.1} mm by the model fitted to those of every other one, and single runs left out by {:.1} mm: \
+                 its numbers depend on the {condition}",
+                1e3 * elsewhere,
+                1e3 * left_out
             ),
             Reason::FarFromTheRuns { inside, nominal } => format!(
                 "the model misses the runs that it was fitted to by {:.1} mm, the nominal robot by {:.1} mm",

@@ -6,7 +6,7 @@
 mod fitted;
 
 use super::{Drive, Evidence, Fit, FitError, Level, correlations, end_poses, noise_shape, robot_of};
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, Levels};
 use crate::drive::Robot;
 use crate::effect::{Evaluate, Model, ModelError};
 use crate::geometry::{Pose2, wrap};
@@ -32,6 +32,8 @@ pub(crate) struct Ends {
     pub runs: Vec<End>,
     tracks: Vec<Arc<Believed>>,
     pub with_heading: bool,
+    /// The conditions of the runs, by their names.
+    pub conditions: Arc<[Levels]>,
     /// What was found of the data, where it was [examined](Ends::examined).
     pub setup: Arc<Setup>,
     /// Why these return errors are doubtful.
@@ -78,6 +80,7 @@ impl Ends {
             runs: Vec::new(),
             tracks: Vec::new(),
             with_heading,
+            conditions: Levels::of(data).into(),
             setup: Arc::default(),
             doubts: Vec::new(),
         };

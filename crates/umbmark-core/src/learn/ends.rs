@@ -1,8 +1,10 @@
 //! Learning from return poses: the model is fitted to all runs, and again without each of them.
 
-use super::story::{Error, Learnt, MOST_EFFECTS, Step};
+use super::misfits::elsewhere;
+use super::story::{Crossed, Error, Learnt, MOST_EFFECTS, Step};
+use crate::dataset::Levels;
 use crate::diagnose::ends::{self, Moments};
-use crate::diagnose::{Diagnosis, Options, Reason, Suspect};
+use crate::diagnose::{Diagnosis, Options, Reason, Suspect, Verdict};
 use crate::drive::Robot;
 use crate::effect::{Model, Part};
 use crate::evidence::ends::{End, Fitted};
@@ -57,8 +59,14 @@ pub(super) fn learn(ends: &Ends, start: &Model, options: &Options, watch: &Watch
         break;
     }
     remarks.extend(diagnosis.remarks.iter().cloned());
+    let conditions: Vec<Crossed> = ends.conditions.iter().map(|levels| Crossed::new(levels, Vec::new())).collect();
+    let against = elsewhere(&story.steps, &conditions, ends.runs.len(), 0.0);
+    if diagnosis.verdict == Verdict::Explained && !against.is_empty() {
+        diagnosis.verdict = Verdict::NotExplained;
+    }
+    diagnosis.reasons.extend(against);
     let (steps, model, verdict) = (story.steps, story.model, diagnosis.verdict);
-    Ok(Learnt { steps, verdict, model, noise: None, diagnosis, remarks, partial })
+    Ok(Learnt { steps, verdict, model, noise: None, conditions, diagnosis, remarks, partial })
 }
 
 /// The error of a model with the values that it has.
@@ -175,6 +183,8 @@ impl<'a> Story<'a> {
             .enumerate()
             .map(|(fold, model)| squares(self.ends, model, |run| run % folds == fold));
         let criteria = criteria(self.ends, &self.model);
+        let conditions = self.ends.conditions.iter();
+        let elsewhere = conditions.map(|levels| of_other_levels(self.ends, &self.model, levels).error()).collect();
         self.steps.push(Step {
             added,
             class,
@@ -182,6 +192,7 @@ impl<'a> Story<'a> {
             law: None,
             error: squares(self.ends, &self.model, |_| true).error(),
             held_out: held_out.fold(Squares::default(), Squares::add).error(),
+            elsewhere,
             aicc: criteria.map(|c| c[0]),
             bic: criteria.map(|c| c[1]),
         });
@@ -254,6 +265,17 @@ fn without(ends: &Ends, fold: usize, folds: usize) -> Ends {
         (run - 1) % folds != fold
     });
     rest
+}
+
+/// Errors of the runs of each level of a condition, by a model that is fitted to the others. Where these allow no fit, it is the nominal robot.
+fn of_other_levels(ends: &Ends, model: &Model, levels: &Levels) -> Squares {
+    let level_of = |run: usize| levels.of_run(&ends.runs[run].name);
+    let of_level = |level: usize| {
+        let others: Vec<usize> = (0..ends.runs.len()).filter(|run| level_of(*run) != Some(level)).collect();
+        let fitted = Fitted::new(&ends.only(&others), model).map(|fitted| fitted.model);
+        squares(ends, &fitted.unwrap_or_else(|_| Model::new(&ends.robot)), |run| level_of(run) == Some(level))
+    };
+    (0..levels.levels.len()).map(of_level).fold(Squares::default(), Squares::add)
 }
 
 /// Errors of some runs.

@@ -1,6 +1,6 @@
 //! Reasons against a learnt model that its own errors give.
 
-use super::story::Step;
+use super::story::{Crossed, Error, Step};
 use crate::diagnose::Reason;
 
 /// A model misses by more than the nominal robot, or a model with fewer effects, where its error exceeds this multiple of the other's: three
@@ -31,6 +31,23 @@ pub(super) fn misfits(steps: &[Step], runs: usize, noise: f64, is_nominal: bool)
     reasons
 }
 
+/// What speaks against the model of the last step by the runs of levels of conditions that were left out: fitted to those of the other levels, it
+/// misses them by more than it misses single runs that are left out. `noise` is that of single positions \[m\]. Where the runs of one level alone
+/// tell an effect, those of the others cannot predict them.
+pub(super) fn elsewhere(steps: &[Step], conditions: &[Crossed], runs: usize, noise: f64) -> Vec<Reason> {
+    let Some(end) = steps.last().filter(|_| runs >= ENOUGH_RUNS) else { return Vec::new() };
+    let of_condition = |(own, error): (&Crossed, &Error)| {
+        let (elsewhere, left_out) = (error.position, end.held_out.position);
+        let condition = own.names[0].clone();
+        (own.only.is_empty() && elsewhere > WORSE * left_out.max(noise)).then_some(Reason::WorseElsewhere {
+            condition,
+            elsewhere,
+            left_out,
+        })
+    };
+    conditions.iter().zip(&end.elsewhere).filter_map(of_condition).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::story::Error;
@@ -40,7 +57,18 @@ mod tests {
     fn row(added: Option<&'static str>, [inside, left_out]: [f64; 2]) -> Step {
         let error = |mm: f64| Error { position: 1e-3 * mm, heading: None, weighted: 1.0 };
         let (error, held_out) = (error(inside), error(left_out));
-        Step { added, class: Vec::new(), p_adjusted: None, law: None, error, held_out, aicc: None, bic: None }
+        let elsewhere = Vec::new();
+        Step {
+            added,
+            class: Vec::new(),
+            p_adjusted: None,
+            law: None,
+            error,
+            held_out,
+            elsewhere,
+            aicc: None,
+            bic: None,
+        }
     }
 
     /// The reasons against a model that misses its own runs and held-out ones by so many millimetres, the nominal robot by 10 mm.

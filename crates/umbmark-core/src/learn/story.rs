@@ -1,5 +1,6 @@
 //! How a model was learnt, step by step.
 
+use crate::dataset::stated::{Levels, PATH};
 use crate::diagnose::{Diagnosis, Reason, Repeated, Verdict};
 use crate::effect::Model;
 use crate::evidence::Evidence;
@@ -35,6 +36,9 @@ pub struct Step {
     pub error: Error,
     /// In held-out runs.
     pub held_out: Error,
+    /// In the runs of each level of a condition, predicted by the model fitted to those of the other levels: one for each of the
+    /// [conditions](Learnt::conditions).
+    pub elsewhere: Vec<Error>,
     /// Akaike's criterion with its small-sample correction; `None` for too few runs.
     pub aicc: Option<f64>,
     /// Bayes' criterion.
@@ -55,6 +59,24 @@ impl Step {
     }
 }
 
+/// A condition whose levels were left out, one after the other: a floor, a load, a path, a day.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Crossed {
+    /// Its name, and those of others that divide the runs in the same way.
+    pub names: Vec<String>,
+    /// Its levels.
+    pub levels: Vec<String>,
+    /// Effects of the model that the runs of one level alone tell, with that level.
+    pub only: Vec<(&'static str, String)>,
+}
+
+impl Crossed {
+    pub(super) fn new(levels: &Levels, only: Vec<(&'static str, usize)>) -> Crossed {
+        let only = only.into_iter().map(|(effect, level)| (effect, levels.levels[level].clone())).collect();
+        Crossed { names: levels.names.clone(), levels: levels.levels.clone(), only }
+    }
+}
+
 /// What was learnt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Learnt {
@@ -68,6 +90,8 @@ pub struct Learnt {
     pub noise: Option<Noise>,
     /// The last diagnosis: of the model that was learnt.
     pub diagnosis: Diagnosis,
+    /// The conditions whose levels were left out, one after the other.
+    pub conditions: Vec<Crossed>,
     /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
     /// Whether it was stopped before the search for missing effects ended.
@@ -80,10 +104,29 @@ impl Learnt {
         self.verdict == Verdict::NotExplained || self.diagnosis.reasons.iter().any(Reason::forbids_writing)
     }
 
+    /// What the model was not tested on, in words; `None` where nothing was fitted.
+    pub fn untested(&self) -> Option<String> {
+        let named = |word: &str| self.conditions.iter().flat_map(|own| &own.names).any(|name| name.contains(word));
+        let all = [(PATH, "paths"), ("speed", "speeds"), ("floor", "floors"), ("load", "loads")];
+        let others: Vec<&str> = all.iter().filter(|(word, _)| !named(word)).map(|(_, others)| *others).collect();
+        let (last, first) = others.split_last()?;
+        let others = if first.is_empty() { (*last).to_owned() } else { format!("{} and {last}", first.join(", ")) };
+        (!self.diagnosis.fitted.is_empty()).then(|| format!("other {others} than those of these runs"))
+    }
+
     /// If columns contradict their names, nothing is learnt about the robot.
     pub(super) fn of_faults(evidence: &dyn Evidence, steps: Vec<Step>) -> Learnt {
         let model = Model::new(evidence.robot());
         let diagnosis = Diagnosis::of_faults(evidence, &model);
-        Learnt { steps, verdict: diagnosis.verdict, model, noise: None, diagnosis, remarks: Vec::new(), partial: false }
+        Learnt {
+            steps,
+            verdict: diagnosis.verdict,
+            model,
+            noise: None,
+            diagnosis,
+            conditions: Vec::new(),
+            remarks: Vec::new(),
+            partial: false,
+        }
     }
 }

@@ -2,10 +2,11 @@
 
 use super::ends::{Story, free_part};
 use super::*;
+use crate::dataset::{RunConditions, Stated};
 use crate::diagnose::tests::{margin, robot_with, simulated, trials};
 use crate::diagnose::{Options, Reason, Verdict, base_model};
 use crate::drive::Robot;
-use crate::evidence::{Ends, Fit, fit};
+use crate::evidence::{Ends, Fit, Level, fit};
 use crate::likelihood::watched::watched;
 use crate::path::Path;
 use rayon::prelude::*;
@@ -231,4 +232,84 @@ fn intervals_of_fits_to_tracks_hold_the_truth_in_at_least_nineteen_of_twenty() {
         assert!(share(0) >= 0.95 - margin(0.95, trials), "{effect} {parameter}: {}", share(0));
         assert!(share(1) >= 0.95 - 2.0 * margin(0.95, trials), "{effect} {parameter}: {}", share(1));
     }
+}
+
+/// A floor, and what a robot's errors are on it.
+type Floor<'a> = (&'a str, &'a [(&'a str, &'a str, f64)]);
+
+/// Runs of a robot on two floors, so many each way.
+fn on_floors(floors: [Floor; 2], runs: u64) -> Dataset {
+    let mut data = Dataset::default();
+    for (number, (floor, effects)) in floors.into_iter().enumerate() {
+        let own = watched(&robot_with(effects), runs, 11 + number as u64);
+        for mut run in own.runs.iter().cloned() {
+            run.name = format!("{floor}_{}", run.name);
+            let stated = vec![("floor".to_owned(), Stated::Word(floor.to_owned()))];
+            data.conditions.push(RunConditions { run: run.name.clone(), stated });
+            run.number += number as u32 * 100;
+            data.runs.push(run);
+        }
+        (data.robot, data.path) = (own.robot, own.path);
+    }
+    data
+}
+
+fn at_level(data: &Dataset, level: Level) -> Learnt {
+    learn(data, &Options { ends_only: level == Level::Ends, draws: 199, ..Options::default() }).unwrap()
+}
+
+/// Of one floor as of the other: runs of a floor that was left out are predicted as runs that were, and nothing is said against the model.
+#[test]
+fn a_model_that_holds_on_two_floors_predicts_each_by_the_other() {
+    let data = on_floors([("tile", &[]), ("felt", &[])], 4);
+    for level in [Level::Tracks, Level::Ends] {
+        let learnt = at_level(&data, level);
+        assert_eq!(learnt.conditions[0].names, ["floor"]);
+        assert!(learnt.conditions[0].only.is_empty(), "{:?}", learnt.conditions);
+        let end = learnt.steps.last().unwrap();
+        let [elsewhere, left_out] = [end.elsewhere[0].position, end.held_out.position];
+        assert!((elsewhere / left_out - 1.0).abs() < 0.25, "{level:?} {elsewhere} {left_out}");
+        let nominal = &learnt.steps[0];
+        assert_eq!(nominal.elsewhere[0].position, nominal.error.position, "nothing is fitted to nominal numbers");
+        assert_eq!(learnt.untested().unwrap(), "other paths, speeds and loads than those of these runs");
+        let against = |reason: &Reason| matches!(reason, Reason::WorseElsewhere { .. });
+        assert!(!learnt.diagnosis.reasons.iter().any(against), "{level:?} {:?}", learnt.diagnosis.reasons);
+    }
+}
+
+/// Nominally right on tile; 3 % off on felt, with many more runs there: by these, the runs on tile are missed by more than by the nominal robot.
+#[test]
+fn a_model_that_does_not_hold_on_another_floor_is_not_explained() {
+    let (tile, felt) = (on_floors([("tile", &[]), ("felt", &[])], 4), [("wheelbase", "e_b", 1.03)]);
+    let other = on_floors([("none", &[]), ("felt", &felt)], 4);
+    let mut data = tile;
+    let is_felt = |name: &str| name.starts_with("felt");
+    data.runs.retain(|run| !is_felt(&run.name));
+    data.runs.extend(other.runs.into_iter().filter(|run| is_felt(&run.name)));
+    for level in [Level::Tracks, Level::Ends] {
+        let learnt = at_level(&data, level);
+        let end = learnt.steps.last().unwrap();
+        assert!(end.elsewhere[0].position > 1.5 * end.held_out.position, "{level:?} {:?}", learnt.steps);
+        let is_told =
+            |reason: &Reason| matches!(reason, Reason::WorseElsewhere { condition, .. } if condition == "floor");
+        assert!(learnt.diagnosis.reasons.iter().any(is_told), "{level:?} {:?}", learnt.diagnosis.reasons);
+        assert_ne!(learnt.verdict, Verdict::Explained, "{level:?}");
+    }
+}
+
+/// Straight runs on felt hardly tell the wheelbase: squares on tile alone do.
+#[test]
+fn what_the_runs_of_one_floor_alone_tell_is_said() {
+    let squares = on_floors([("tile", &[("wheelbase", "e_b", 1.02)]), ("felt", &[])], 3);
+    let line = Path::new(&crate::path::STRAIGHT, &[4.0], crate::path::SpeedProfile::default()).unwrap();
+    let straight = crate::likelihood::watched::watched_on(&line, &robot_with(&[("wheelbase", "e_b", 1.02)]), 3, 5);
+    let mut data = squares;
+    data.runs.retain(|run| run.name.starts_with("tile"));
+    for (mut run, number) in straight.runs.into_iter().zip(200..) {
+        run.name = format!("felt_{}", run.name);
+        run.number = number;
+        data.runs.push(run);
+    }
+    let learnt = at_level(&data, Level::Tracks);
+    assert_eq!(learnt.conditions[0].only, [("wheelbase", "tile".to_owned())]);
 }

@@ -1,7 +1,7 @@
 //! Learning from tracks: the same story, computed from products of columns instead of one fit per fold.
 
-use super::misfits::misfits;
-use super::story::{Error, Learnt, MOST_EFFECTS, Step};
+use super::misfits::{elsewhere, misfits};
+use super::story::{Crossed, Error, Learnt, MOST_EFFECTS, Step};
 use crate::compare::tracks::against_as_written;
 use crate::diagnose::tracks::{self, Added, Conclusion, Found, Search, Wanted};
 use crate::diagnose::{Diagnosis, Options, Reason, Verdict};
@@ -218,7 +218,9 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     }
     reasons.splice(..0, search.stopped.then_some(Reason::Stopped));
     reasons.extend(against_as_written(&written.observed, &written.model, options));
-    reasons.extend(misfits(&steps, runs, written.observed.setup.noise.position, is_nominal(&last.fitted)));
+    let (noise, conditions) = (written.observed.setup.noise.position, crossed(&written));
+    reasons.extend(misfits(&steps, runs, noise, is_nominal(&last.fitted)));
+    reasons.extend(elsewhere(&steps, &conditions, runs, noise));
     let verdict = match (&left.smooth, more) {
         _ if verdict == Verdict::NotEnoughData => verdict,
         (Some(_), _) => Verdict::UnlistedEffect,
@@ -258,7 +260,14 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         next_experiments: experiments,
         ..diagnosis
     };
-    Ok(Learnt { steps, verdict, model, noise: Some(written.noise), remarks, diagnosis, partial: false })
+    Ok(Learnt { steps, verdict, model, noise: Some(written.noise), conditions, remarks, diagnosis, partial: false })
+}
+
+/// The conditions of the runs, and what of a model is told under one of their levels alone.
+fn crossed(written: &Fitted) -> Vec<Crossed> {
+    let alone = Alone::new(written.clone());
+    let conditions = written.observed.conditions.iter();
+    conditions.map(|levels| Crossed::new(levels, alone.elsewhere(levels).only)).collect()
 }
 
 /// Remark on lengths, times and thresholds that the runs do not determine: they keep their start values.
@@ -328,6 +337,8 @@ fn step_of(alone: &Alone, added: Option<Told>) -> Step {
     let (inside, held_out) = alone.misses();
     let (aicc, bic, weighted) = alone.criteria();
     let error = |misses: Misses| Error { position: misses.position, heading: misses.heading, weighted };
+    let conditions = alone.fitted().observed.conditions.iter();
+    let elsewhere = conditions.map(|levels| error(alone.elsewhere(levels).misses)).collect();
     let (added, class, p_adjusted) = added.map_or((None, Vec::new(), None), |(name, class, p)| (Some(name), class, p));
     Step {
         added,
@@ -336,6 +347,7 @@ fn step_of(alone: &Alone, added: Option<Told>) -> Step {
         law: None,
         error: error(inside),
         held_out: error(held_out),
+        elsewhere,
         aicc: Some(aicc),
         bic: Some(bic),
     }

@@ -149,6 +149,12 @@ impl Slopes {
 }
 
 impl Fitted {
+    /// Distance of one of the free values from the value without effect; 0 for a shape.
+    pub fn departure(&self, free: usize) -> f64 {
+        let place = self.free[free];
+        self.model.values().nth(place).zip(self.model.nothing(place)).map_or(0.0, |(value, nothing)| value - nothing)
+    }
+
     /// Takes as start values those that fit the runs in short pieces, if the whole runs are nearer to them.
     ///
     /// Without headings, a wheelbase that is a few per cent off turns a long way by a right angle and more against the measured one, and a fit

@@ -12,7 +12,7 @@ mod steps;
 mod uneven;
 mod walk;
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, Levels};
 use crate::drive::Robot;
 use crate::effect::{Chain, Model, RunContext, TestKind};
 use crate::geometry::{Pose2, wrap};
@@ -155,6 +155,8 @@ pub struct Observed {
     pub path: Option<Path>,
     /// What was found of the experiment before anything was fitted.
     pub setup: Arc<Setup>,
+    /// The conditions of the runs, by the names of their logs.
+    pub conditions: Arc<[Levels]>,
 }
 
 impl Observed {
@@ -183,7 +185,8 @@ impl Observed {
             }
         }
         let runs = pieces::cut(runs, robot);
-        Ok(Observed { robot: robot.clone(), runs, path: data.path.clone(), setup: Arc::new(setup) })
+        let conditions = Levels::of(data).into();
+        Ok(Observed { robot: robot.clone(), runs, path: data.path.clone(), setup: Arc::new(setup), conditions })
     }
 
     /// Believed travel of the runs.

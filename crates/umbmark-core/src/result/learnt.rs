@@ -31,6 +31,11 @@ pub struct Step {
     pub heldout_rmse_m: Option<f64>,
     /// The same of headings, in rad; null where none were measured.
     pub heldout_heading_rmse_rad: Option<f64>,
+    /// Error of positions of the runs of each level of a condition, predicted by the model fitted to those of the other levels, in m: one for each
+    /// of the conditions.
+    pub elsewhere_rmse_m: Vec<Option<f64>>,
+    /// The same of headings, in rad; null where none were measured.
+    pub elsewhere_heading_rmse_rad: Vec<Option<f64>>,
     /// Akaike's information criterion, corrected for few runs; null where these are too few.
     pub aicc: Option<f64>,
     /// Schwarz's information criterion; null where the runs are too few.
@@ -48,8 +53,41 @@ impl From<&learn::Step> for Step {
             heading_rmse_rad: s.error.heading,
             heldout_rmse_m: finite(s.held_out.position),
             heldout_heading_rmse_rad: s.held_out.heading,
+            elsewhere_rmse_m: s.elsewhere.iter().map(|error| finite(error.position)).collect(),
+            elsewhere_heading_rmse_rad: s.elsewhere.iter().map(|error| error.heading).collect(),
             aicc: s.aicc,
             bic: s.bic,
+        }
+    }
+}
+
+/// An effect that the runs of one level of a condition alone tell.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ToldOnlyBy {
+    /// The effect.
+    pub effect: &'static str,
+    /// The level.
+    pub level: String,
+}
+
+/// A condition whose levels were left out, one after the other.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct CrossedCondition {
+    /// Its name, and those of others that divide the runs in the same way.
+    pub names: Vec<String>,
+    /// Its levels.
+    pub levels: Vec<String>,
+    /// Effects of the model that the runs of one level alone tell.
+    pub told_only_by: Vec<ToldOnlyBy>,
+}
+
+impl From<&learn::Crossed> for CrossedCondition {
+    fn from(own: &learn::Crossed) -> Self {
+        let only = |(effect, level): &(&'static str, String)| ToldOnlyBy { effect, level: level.clone() };
+        CrossedCondition {
+            names: own.names.clone(),
+            levels: own.levels.clone(),
+            told_only_by: own.only.iter().map(only).collect(),
         }
     }
 }
@@ -78,6 +116,10 @@ pub struct Learnt {
     pub correction: Changes,
     /// The answer in words, as of `solve`.
     pub sentence: String,
+    /// The conditions whose levels were left out, one after the other.
+    pub conditions: Vec<CrossedCondition>,
+    /// What the model was not tested on, in words; null where nothing was fitted.
+    pub untested: Option<String>,
     /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
     /// Whether it was stopped before the search for missing effects ended.
@@ -111,6 +153,8 @@ impl Learnt {
             findings: diagnosis.into(),
             correction: changes(&solution.changes),
             sentence: solution.sentence(),
+            conditions: learnt.conditions.iter().map(CrossedCondition::from).collect(),
+            untested: learnt.untested(),
             remarks: learnt.remarks.clone(),
             partial: learnt.partial,
             size: options.size,

@@ -2246,6 +2246,10 @@ class Learnt(Result, frozen=True):
         runs show none.
     sentence : str
         The answer in words, as of ``solve``.
+    conditions : tuple[CrossedCondition, ...]
+        The conditions whose levels were left out, one after the other.
+    untested : str or None
+        What the model was not tested on, in words; None where nothing was fitted.
     remarks : tuple[str, ...]
         Further remarks, a sentence each.
     partial : bool
@@ -2282,6 +2286,8 @@ class Learnt(Result, frozen=True):
     repeats: Repeated | None
     correction: dict[str, Change]
     sentence: str
+    conditions: tuple[CrossedCondition, ...]
+    untested: str | None
     remarks: tuple[str, ...]
     partial: bool
     size: float
@@ -2314,6 +2320,11 @@ class Step(Record, frozen=True):
         Error of positions in held-out runs, in m.
     heldout_heading_rmse_rad : float or None
         The same of headings, in rad; None where none were measured.
+    elsewhere_rmse_m : tuple[float or None, ...]
+        Error of positions of the runs of each level of a condition, predicted by the model fitted
+        to those of the other levels, in m: one for each of the conditions.
+    elsewhere_heading_rmse_rad : tuple[float or None, ...]
+        The same of headings, in rad; None where none were measured.
     aicc : float or None
         Akaike's information criterion, corrected for few runs; None where these are too few.
     bic : float or None
@@ -2328,6 +2339,8 @@ class Step(Record, frozen=True):
     heading_rmse_rad: float | None
     heldout_rmse_m: float | None
     heldout_heading_rmse_rad: float | None
+    elsewhere_rmse_m: tuple[float | None, ...]
+    elsewhere_heading_rmse_rad: tuple[float | None, ...]
     aicc: float | None
     bic: float | None
 
@@ -2355,6 +2368,39 @@ class Change(Record, frozen=True):
     low: float | None
     high: float | None
     worth_m: float | None
+
+
+class CrossedCondition(Record, frozen=True):
+    """A condition whose levels were left out, one after the other.
+
+    Attributes
+    ----------
+    names : tuple[str, ...]
+        Its name, and those of others that divide the runs in the same way.
+    levels : tuple[str, ...]
+        Its levels.
+    told_only_by : tuple[ToldOnlyBy, ...]
+        Effects of the model that the runs of one level alone tell.
+    """
+
+    names: tuple[str, ...]
+    levels: tuple[str, ...]
+    told_only_by: tuple[ToldOnlyBy, ...]
+
+
+class ToldOnlyBy(Record, frozen=True):
+    """An effect that the runs of one level of a condition alone tell.
+
+    Attributes
+    ----------
+    effect : str
+        The effect.
+    level : str
+        The level.
+    """
+
+    effect: str
+    level: str
 
 
 class Paper(Result, frozen=True, kw_only=True):

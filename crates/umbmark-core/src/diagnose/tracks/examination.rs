@@ -225,9 +225,7 @@ impl Examination {
 
     /// Distance of one of the model's free values from the value without effect.
     pub fn departure(&self, column: usize) -> f64 {
-        let place = self.fitted.free[column];
-        let model = &self.fitted.model;
-        model.values().nth(place).zip(model.nothing(place)).map_or(0.0, |(value, nothing)| value - nothing)
+        self.fitted.departure(column)
     }
 
     /// The effect that explains most of some products, of those `wanted`, beside the model.

@@ -211,7 +211,13 @@ mod tests {
         };
         let of = |model: &Model| {
             let run = crate::likelihood::ObservedRun::planned(track(), Direction::Ccw, &watched.runs[0], model);
-            Observed { robot: robot.clone(), runs: vec![run], path: None, setup: Default::default() }
+            Observed {
+                robot: robot.clone(),
+                runs: vec![run],
+                path: None,
+                setup: Default::default(),
+                conditions: Default::default(),
+            }
         };
         let along = places(&of(&model(1.0, 1.0)));
         assert!(hold(&along, &of(&model(1.0, 1.0))) && hold(&along, &of(&model(1.002, 1.004))));

@@ -1,7 +1,8 @@
 //! A fitted model by itself: its errors, in the runs it was fitted to and in runs left out, and its criteria.
 
 use super::errors::{Errors, Misses};
-use super::system::{Projected, System};
+use super::system::{Projected, System, Unit};
+use crate::dataset::Levels;
 use crate::effect::ModelError;
 use crate::likelihood::{Column, Fitted, Noise};
 use nalgebra::{DMatrix, DVector};
@@ -11,6 +12,18 @@ use rayon::prelude::*;
 const FEWEST_FOLDS: usize = 6;
 /// The values fitted with usual noise are used if they predict held-out runs better by this share.
 const NEARER: f64 = 0.1;
+
+/// Runs tell a number that others tell too if they hold this share of what all of them say of it.
+const TOLD: f64 = 0.1;
+
+/// How well runs are predicted by those of other levels of a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Elsewhere {
+    /// Errors of the runs of each level, the model fitted to those of the others.
+    pub misses: Misses,
+    /// Effects that runs of one level alone tell, with that level: for its runs they are taken to do nothing.
+    pub only: Vec<(&'static str, usize)>,
+}
 
 /// A fitted model, its residuals, and the columns of its free values and of the effects of the reference that are fitted along.
 #[derive(Clone)]
@@ -76,6 +89,62 @@ impl Alone {
     /// Errors in the fitted runs and in held-out runs.
     pub fn misses(&self) -> (Misses, Misses) {
         (self.errors.in_sample(), self.left_out())
+    }
+
+    /// Errors of the runs of each level of a condition, with the model fitted to those of the other levels.
+    pub fn elsewhere(&self, levels: &Levels) -> Elsewhere {
+        let system = self.usual.as_ref().unwrap_or(&self.system);
+        let level_of = |unit: &Unit| levels.of_run(&self.fitted.observed.runs[unit.run].log);
+        let without = |level: usize| {
+            let mut products = DMatrix::zeros(system.width, system.width);
+            let others = system.units.iter().filter(|unit| level_of(unit) != Some(level));
+            others.for_each(|unit| products += &unit.white);
+            self.fitted_to(system, products)
+        };
+        let by_level: Vec<_> = (0..levels.levels.len()).into_par_iter().map(without).collect();
+        let misses = self.errors.misses(|fold| match system.of_fold(fold).find_map(level_of) {
+            Some(level) => by_level[level].0.clone(),
+            None => self.own(&Projected::fit(&system.without(fold), &self.together())),
+        });
+        let of_level = |(level, (_, untold)): (usize, &(_, Vec<&'static str>))| {
+            untold.iter().map(move |effect| (*effect, level)).collect::<Vec<_>>()
+        };
+        Elsewhere { misses, only: by_level.iter().enumerate().flat_map(of_level).collect() }
+    }
+
+    /// The model's own values by products of some runs, and the effects of which these say next to nothing: they are taken to do nothing, and
+    /// what they explain falls to the others.
+    fn fitted_to(
+        &self,
+        system: &System,
+        mut products: DMatrix<f64>,
+    ) -> ((Vec<usize>, DVector<f64>), Vec<&'static str>) {
+        let (own, residual) = (self.fitted.free.len(), system.residual());
+        let (mut told, mut untold): (Vec<usize>, Vec<usize>) = ((own..residual).collect(), Vec::new());
+        for column in 0..own {
+            let left = |products: &DMatrix<f64>| Projected::new(products, &told).products[(column, column)];
+            let is_told = left(&products) >= TOLD * left(&system.whole);
+            if is_told { told.push(column) } else { untold.push(column) }
+        }
+        for column in &untold {
+            let added = products.column(residual) + products.column(*column) * self.fitted.departure(*column);
+            products.set_column(residual, &added);
+        }
+        let values = Projected::fit(&products, &told);
+        let fitted = told.iter().copied().zip(values.iter().copied()).filter(|(column, _)| *column < own);
+        let nothing = untold.iter().map(|column| (*column, -self.fitted.departure(*column)));
+        let (columns, values): (Vec<usize>, Vec<f64>) = fitted.chain(nothing).unzip();
+        let is_size = |column: &&usize| self.fitted.model.nothing(self.fitted.free[**column]).is_some();
+        let mut effects: Vec<&'static str> = untold.iter().filter(is_size).map(|column| self.effect(*column)).collect();
+        effects.dedup();
+        ((columns, DVector::from_vec(values)), effects)
+    }
+
+    /// The effect that a free value belongs to.
+    fn effect(&self, column: usize) -> &'static str {
+        let parts = self.fitted.model.parts().iter();
+        let mut names = parts.flat_map(|part| part.values.iter().map(move |_| part.effect.name()));
+        names.nth(self.fitted.free[column]).unwrap_or_default()
     }
 
     /// The model's own values, fitted without each fold in turn.

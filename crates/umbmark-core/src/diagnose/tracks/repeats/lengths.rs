@@ -64,6 +64,7 @@ mod tests {
             runs: Vec::new(),
             path: Some(Path::umbmark()),
             setup: Default::default(),
+            conditions: Default::default(),
         };
         let of = |value: f64, standard_error: f64| {
             let length = Estimate { effect: "own", parameter: "c", value, standard_error, degrees_of_freedom: 9.0 };

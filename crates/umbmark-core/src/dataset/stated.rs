@@ -1,10 +1,13 @@
 //! What is stated of runs, as conditions that can be asked for: which of them differ, which cannot be told from each other.
 
-use crate::dataset::{Dataset, Stated};
+use super::{Dataset, Stated};
 use std::collections::BTreeMap;
 
 /// The name of the condition that several datasets have by themselves.
 pub const SESSION: &str = "session";
+
+/// The name of the condition in which sets with paths of their own differ besides.
+pub const PATH: &str = "path";
 
 /// Between what values of a condition differ.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,12 +26,12 @@ pub struct Condition {
     /// What it is.
     pub kind: Kind,
     /// Of each run: its level's place, or the number; `None` where it is not stated.
-    pub(super) of_runs: Vec<Option<f64>>,
+    pub(crate) of_runs: Vec<Option<f64>>,
 }
 
 impl Condition {
     /// How many columns it has in a regression.
-    pub(super) fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         match &self.kind {
             Kind::Levels(levels) => levels.len() - 1,
             Kind::Amount(_) => 1,
@@ -36,7 +39,7 @@ impl Condition {
     }
 
     /// Its column of a run.
-    pub(super) fn column(&self, run: usize, column: usize) -> f64 {
+    pub(crate) fn column(&self, run: usize, column: usize) -> f64 {
         let value = self.of_runs[run].unwrap_or(0.0);
         match self.kind {
             Kind::Levels(_) => f64::from(u8::from(value == (column + 1) as f64)),
@@ -45,14 +48,14 @@ impl Condition {
     }
 
     /// Whether every run of which both are stated tells its value from that of the other.
-    pub(super) fn is_determined_by(&self, other: &Condition) -> bool {
+    pub(crate) fn is_determined_by(&self, other: &Condition) -> bool {
         let mut known: BTreeMap<u64, f64> = BTreeMap::new();
         let mut pairs = self.of_runs.iter().zip(&other.of_runs).filter_map(|(own, other)| Some(((*own)?, (*other)?)));
         pairs.all(|(own, other)| *known.entry(other.to_bits()).or_insert(own) == own)
     }
 
     /// How many values of another condition each of its own values has, by its value.
-    pub(super) fn values_of(&self, other: &Condition) -> BTreeMap<u64, usize> {
+    pub(crate) fn values_of(&self, other: &Condition) -> BTreeMap<u64, usize> {
         let mut pairs: Vec<(u64, u64)> = self
             .of_runs
             .iter()
@@ -82,7 +85,7 @@ impl Condition {
 }
 
 /// The conditions of some runs, each by the runs' names; and those that are the same in all of them.
-pub(super) fn conditions(data: &Dataset, runs: &[String]) -> (Vec<Condition>, Vec<String>) {
+pub(crate) fn conditions(data: &Dataset, runs: &[String]) -> (Vec<Condition>, Vec<String>) {
     let stated = |run: &String| data.conditions.iter().find(|stated| stated.run == *run);
     let mut names: Vec<&str> = Vec::new();
     for (name, _) in runs.iter().filter_map(stated).flat_map(|stated| &stated.stated) {
@@ -160,6 +163,37 @@ fn condition(name: &str, values: &[Option<Stated>]) -> Option<Condition> {
     (levels.len() > 1).then_some(Condition { names, kind: Kind::Levels(levels), of_runs })
 }
 
+/// Runs that were driven under several levels of a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Levels {
+    /// The condition, and others that divide the runs in the same way.
+    pub names: Vec<String>,
+    /// What the levels are called.
+    pub levels: Vec<String>,
+    of_runs: BTreeMap<String, usize>,
+}
+
+impl Levels {
+    /// The conditions of a dataset whose levels stand for more than a run each: a level of one run is left out where runs are.
+    pub fn of(data: &Dataset) -> Vec<Levels> {
+        let runs: Vec<String> = data.runs.iter().map(|run| run.name.clone()).collect();
+        let levels = |condition: Condition| {
+            let Kind::Levels(levels) = condition.kind else { return None };
+            let own = |(run, level): (&String, &Option<f64>)| Some((run.clone(), (*level)? as usize));
+            let of_runs: BTreeMap<String, usize> = runs.iter().zip(&condition.of_runs).filter_map(own).collect();
+            let is_path = data.drives_other_paths() && condition.names.iter().any(|name| name == SESSION);
+            let names = condition.names.into_iter().chain(is_path.then(|| PATH.to_owned())).collect();
+            (of_runs.len() > levels.len()).then_some(Levels { names, levels, of_runs })
+        };
+        conditions(data, &runs).0.into_iter().filter_map(levels).collect()
+    }
+
+    /// The place of the level of a run; `None` where it is not stated.
+    pub fn of_run(&self, run: &str) -> Option<usize> {
+        self.of_runs.get(run).copied()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -216,5 +250,37 @@ mod tests {
         let (data, names) = data(&named);
         let (found, _) = conditions(&data, &names);
         assert_eq!(found[0].kind, Kind::Levels(vec!["1".into(), "2".into(), "3".into()]));
+    }
+
+    #[test]
+    fn levels_of_a_run_each_and_amounts_are_not_left_out_and_sets_of_other_paths_differ_in_path_too() {
+        let run = |name: &str| crate::dataset::Run {
+            name: name.into(),
+            number: 1,
+            direction: None,
+            test: crate::effect::TestKind::Systematic,
+            log: None,
+            returned: None,
+        };
+        let row = |floor: &'static str, load: f64, own: &'static str| {
+            [("floor", word(floor)), ("load_kg", Stated::Number(load)), ("own", word(own))]
+        };
+        let rows = [row("tile", 0.0, "a"), row("felt", 2.0, "b"), row("felt", 5.0, "c")];
+        let names = ["1", "2", "3"];
+        let named: Vec<(&str, &[(&str, Stated)])> =
+            names.iter().copied().zip(rows.iter().map(|row| &row[..])).collect();
+        let (mut data, _) = data(&named);
+        data.runs = names.map(run).to_vec();
+        let found = Levels::of(&data);
+        assert_eq!(found.len(), 1);
+        assert_eq!(
+            (&found[0].names[..], &found[0].levels[..]),
+            (&["floor".to_owned()][..], &["tile".to_owned(), "felt".to_owned()][..])
+        );
+        assert_eq!([found[0].of_run("1"), found[0].of_run("3"), found[0].of_run("4")], [Some(0), Some(1), None]);
+        let session = |name: &str, first, other_path| crate::dataset::Session { name: name.into(), first, other_path };
+        data.sessions = vec![session("squares", 0, false), session("circles", 2, true)];
+        let found = Levels::of(&data);
+        assert_eq!(found[1].names, ["session", "path"]);
     }
 }
