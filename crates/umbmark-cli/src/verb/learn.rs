@@ -127,7 +127,8 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     text += &(faults_text(&diagnosis.setup) + &reasons_text(&diagnosis.reasons) + &taken_text(&diagnosis.taken));
     for own in &learnt.conditions {
         for (effect, level) in &own.only {
-            let said = format!("{effect} by the runs of {} {level} alone; on those of another it is not known", own.names[0]);
+            let said =
+                format!("{effect} by the runs of {} {level} alone; on those of another it is not known", own.names[0]);
             text += &hanging("told", 10, &said);
         }
     }
