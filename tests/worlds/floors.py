@@ -1,6 +1,7 @@
 """UMBmark tests by tape on several floors or days, whose numbers differ in known ways or do not.
 
-`floors.py --sets 300 --binary PATH` prints how often `umbmark conditions` names what differs.
+`floors.py --sets 300 --binary PATH` prints how often `umbmark conditions` names what differs, and
+with `--learn` how often `umbmark learn` says that its model does not hold on every floor.
 """
 
 import argparse
@@ -103,7 +104,9 @@ def world(kind: str, seed: int) -> World:
     return World(robot, test, rows, stated, differing, values)
 
 
-def said(kind: str, seed: int, binary: File) -> tuple[World, dict[str, Any]]:
+def said(
+    kind: str, seed: int, binary: File, verb: str = "conditions"
+) -> tuple[World, dict[str, Any]]:
     """A world, and what the command says of it."""
     made = world(kind, seed)
     with TemporaryDirectory() as place:
@@ -112,7 +115,7 @@ def said(kind: str, seed: int, binary: File) -> tuple[World, dict[str, Any]]:
         names = list(made.stated[0])
         lines = [",".join(one[name] for name in names) for one in made.stated]
         (folder / "conditions.csv").write_text("\n".join([",".join(names), *lines]) + "\n")
-        words = [str(binary), "conditions", str(folder), "--json", "--threads", "1"]
+        words = [str(binary), verb, str(folder), "--json", "--threads", "1"]
         answer = subprocess.run(words, capture_output=True, text=True, timeout=300)
     if not answer.stdout:
         raise RuntimeError(f"{kind} {seed}: {answer.stderr}")
@@ -149,12 +152,25 @@ def judged(made: World, found: dict[str, Any]) -> dict[str, int]:
     }
 
 
+def of_learnt(made: World, learnt: dict[str, Any]) -> dict[str, int]:
+    """What `learn` says of models that do not hold under another level."""
+    against = [reason for reason in learnt["reasons"] if reason.startswith("runs of a ")]
+    accused = {reason.split()[3] for reason in against}
+    differing = {condition for _, condition in made.differing}
+    return {
+        "explained": int(learnt["verdict"] == "explained"),
+        "differing named": int(bool(accused & differing)),
+        "something else named": int(bool(accused - differing)),
+    }
+
+
 def main(words: list[str]) -> None:
     """Do what the command line says."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("kinds", nargs="*", default=KINDS)
     parser.add_argument("--sets", type=int, default=100)
     parser.add_argument("--first-seed", type=int, default=1)
+    parser.add_argument("--learn", action="store_true", help="ask `learn`, not `conditions`")
     parser.add_argument("--binary", type=File, default=ROOT / "target/release/umbmark")
     chosen = parser.parse_args(words)
     for kind in chosen.kinds:
@@ -162,6 +178,8 @@ def main(words: list[str]) -> None:
 
         def one(seed: int, kind: str = kind) -> dict[str, int] | str:
             try:
+                if chosen.learn:
+                    return of_learnt(*said(kind, seed, chosen.binary, "learn"))
                 return judged(*said(kind, seed, chosen.binary))
             except RuntimeError as error:
                 return str(error)

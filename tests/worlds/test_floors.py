@@ -1,7 +1,7 @@
 """What differs between floors, loads and days, by tape; `floors.py` runs it on many."""
 
 import pytest
-from floors import judged, said, world
+from floors import judged, of_learnt, said, world
 from test_gyro import COMMAND, needs_command
 
 
@@ -28,3 +28,14 @@ def test_where_nothing_differs_it_is_hardly_ever_said() -> None:
     # At 5 %, more than three of 12 are accused with a probability of 0.2 %.
     answers = [judged(*said("nothing", seed, COMMAND)) for seed in range(1, 13)]
     assert sum(answer["something else named"] for answer in answers) <= 3
+
+
+@needs_command
+def test_a_model_is_explained_only_where_it_holds_on_every_floor() -> None:
+    def answers(kind: str, sets: int) -> list[dict[str, int]]:
+        seeds = range(301, 301 + sets)
+        return [of_learnt(*said(kind, seed, COMMAND, "learn")) for seed in seeds]
+
+    differing = answers("wheelbase", 4)
+    assert all(answer["differing named"] and not answer["explained"] for answer in differing)
+    assert not any(answer["something else named"] for answer in answers("nothing", 8))

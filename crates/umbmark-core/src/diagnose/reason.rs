@@ -231,7 +231,7 @@ impl Reason {
             ),
             Reason::WorseElsewhere { condition, elsewhere, left_out } => format!(
                 "runs of a {condition} are missed by {:.1} mm by the model fitted to those of every other one, and single runs left out by {:.1} mm: \
-                 its numbers depend on the {condition}",
+                 its numbers depend on the {condition}, or on what differs with it",
                 1e3 * elsewhere,
                 1e3 * left_out
             ),
