@@ -66,3 +66,21 @@ def test_conditions_are_kept_by_runs_replaced_by_name_and_bad_ones_are_named() -
         umbmark.conditions(two_floors())
     with pytest.raises(ValueError, match="size"):
         umbmark.conditions(stated, size=2)
+
+
+def test_a_learnt_model_is_held_against_floors_that_were_left_out() -> None:
+    floors = (["tile"] * 5 + ["felt"] * 5) * 2
+    learnt = umbmark.learn(two_floors().with_conditions(floor=floors), draws=99)
+    assert [condition.names for condition in learnt.conditions] == [("floor",)]
+    assert set(learnt.conditions[0].levels) == {"tile", "felt"}
+    assert learnt.untested == "other paths, speeds and loads than those of these runs"
+    assert learnt.verdict == "not_explained"
+    assert any("its numbers depend on the floor" in reason for reason in learnt.reasons)
+    row = learnt.table()[-1]
+    assert row["by_floor_rmse_m"] == learnt.steps[-1].elsewhere_rmse_m[0]
+    assert row["by_floor_rmse_m"] > 1.5 * row["heldout_rmse_m"]
+    legend = learnt.plot().get_legend()
+    assert legend is not None
+    labels = [text.get_text() for text in legend.get_texts()]
+    assert labels == ["runs fitted to", "runs left out", "runs of each floor left out"]
+    assert list(learnt.to_pandas()["by_floor_rmse_m"])[-1] == row["by_floor_rmse_m"]

@@ -72,10 +72,13 @@ class Learnt(_documents.Learnt, Explained, frozen=True):
     text: str
 
     def table(self) -> list[Row]:
-        """Give the steps, one dict a row."""
+        """Give the steps, one dict a row; ``by_floor_rmse_m`` where floors were left out."""
         keys = ("p_adjusted", "rmse_m", "heldout_rmse_m", "heldout_heading_rmse_rad", "aicc")
+        by = [f"by_{condition.names[0]}_rmse_m" for condition in self.conditions]
         return [
-            {"added": step.added or "nominal robot"} | {key: getattr(step, key) for key in keys}
+            {"added": step.added or "nominal robot"}
+            | {key: getattr(step, key) for key in keys}
+            | dict(zip(by, step.elsewhere_rmse_m, strict=False))
             for step in self.steps
         ]
 

@@ -185,7 +185,11 @@ def learnt(result: Learnt, ax: Axes | None) -> Axes:
     ax = _axes(ax)
     rows = result.table()
     names = [str(row["added"]) for row in rows]
-    for key, label in (("rmse_m", "runs fitted to"), ("heldout_rmse_m", "runs left out")):
+    drawn = {"rmse_m": "runs fitted to", "heldout_rmse_m": "runs left out"}
+    for condition in result.conditions:
+        name = condition.names[0]
+        drawn[f"by_{name}_rmse_m"] = f"runs of each {name} left out"
+    for key, label in drawn.items():
         ax.plot(names, [MM * (row[key] or np.nan) for row in rows], "o-", label=label)
     ax.set(ylabel="root mean square error [mm]", ylim=(0, None))
     ax.tick_params(axis="x", rotation=30)
