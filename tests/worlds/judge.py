@@ -32,6 +32,13 @@ def fitted(learn: Json, effect: str, parameter: str) -> tuple[float, float] | No
     return None
 
 
+def written(learn: Json, effect: str, parameter: str) -> float | None:
+    """A value of the model, fitted or kept; none where the effect is not in it."""
+    effects = (learn.get("model") or {}).get("effect") or []
+    values = (one.get(parameter) for one in effects if one["name"] == effect)
+    return next(values, None)
+
+
 def off_by(said: tuple[float, float] | None, true: float) -> Json | None:
     """How far a fitted number is from the truth."""
     if said is None:
@@ -71,9 +78,9 @@ def delay(learn: Json, truth: Json) -> Json | None:
     numbers = truth["numbers"]
     follows = numbers["faults"]["counts_commands"] or numbers["reference"]["filter_s"]
     for effect in ("wheel_lag", "reference_filter") if follows else ():
-        lag = [fitted(learn, effect, name) for name in ("share", "time_constant_s")]
-        if lag[0] and lag[1]:
-            late = lag[0][0] * lag[1][0] + (said[0] if said else 0.0)
+        share, time = (written(learn, effect, name) for name in ("share", "time_constant_s"))
+        if share and time:
+            late = share * time + (said[0] if said else 0.0)
             return {"said": late, "true": true, "within": abs(late - true) <= DELAY_S}
     if said is None:
         return {"said": None, "true": true, "within": False} if abs(true) >= 0.01 else None

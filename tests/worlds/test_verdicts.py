@@ -177,8 +177,11 @@ def test_a_delay_of_the_motion_gives_way_to_the_filter_that_is_there(tmp_path: F
     added = [step["added"] for step in learnt["steps"]]
     assert added == [None, "wheel_diameter_ratio", "wheelbase", "scale", "reference_filter"]
     assert learnt["verdict"] == "explained"
+    kept = next(one for one in learnt["model"]["effect"] if one["name"] == "reference_filter")
+    assert (kept["share"], kept["fixed"]) == (1.0, ["share"])
     fitted = {one["parameter"]: one for one in learnt["fitted"]}
-    for name, true in [("e_b", truth["e_b"]), ("e_s", truth["e_s"]), ("share", 1.0)]:
+    time = truth["numbers"]["reference"]["filter_s"]
+    for name, true in [("e_b", truth["e_b"]), ("e_s", truth["e_s"]), ("time_constant_s", time)]:
         assert abs(fitted[name]["value"] - true) < 3 * fitted[name]["standard_error"], fitted[name]
 
 
