@@ -198,8 +198,8 @@ fn only_smooths(fitted: &Fitted, lag: &str) -> Result<bool, FitError> {
     let Some(own) = late(&fitted.model) else { return Ok(false) };
     let mut delayed = fitted.model.without(lag);
     let delay = fitted.model.get(DELAY, "delay_s").unwrap_or(0.0);
-    delayed.set(DELAY, "delay_s", delay + own)?;
-    if is_within_counts(&fitted.observed, [&fitted.model, &delayed]) {
+    let is_possible = delayed.set(DELAY, "delay_s", delay + own).is_ok();
+    if is_possible && is_within_counts(&fitted.observed, [&fitted.model, &delayed]) {
         return Ok(true);
     }
     let mut with = fitted.model.clone();
