@@ -7,7 +7,7 @@
 //! | whiten | `examination` | makes the residuals and columns independent; all tests follow from their products |
 //! | test | `finding`, `significance`, `flips` | F of every effect and smooth, Bonferroni-corrected; sign flips of whole runs |
 //! | class | `class` | which effects look the same in these runs |
-//! | search | `search`, `missing`, `growth`, `needless`, `repeats` | adds what is certified to the model, and tests again |
+//! | search | `search`, `missing`, `growth`, `needless`, `lags`, `repeats` | adds what is certified to the model, and tests again |
 //! | doubt | `doubts`, `chance`, `odd`, `unequal`, `varying`, `wander`, `unconfirmed` | what speaks against the model: what repeats, runs and numbers that differ, headings that wander |
 //! | words | `conclusion`, `left`, `dependence`, `curve`, `suggestion`, `experiments` | the verdict, what the error depends on, and what to drive next |
 //!
@@ -29,6 +29,7 @@ mod experiments;
 mod finding;
 mod flips;
 mod growth;
+mod lags;
 mod left;
 mod missing;
 mod needless;

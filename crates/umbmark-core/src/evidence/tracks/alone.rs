@@ -13,7 +13,7 @@ const FEWEST_FOLDS: usize = 6;
 /// The values fitted with usual noise are used if they predict held-out runs better by this share.
 const NEARER: f64 = 0.1;
 
-/// Runs tell a number that others tell too if they hold this share of what all of them say of it.
+/// Some runs determine a number if they hold this share of the information that all runs have of it.
 const TOLD: f64 = 0.1;
 
 /// How well runs are predicted by those of other levels of a condition.

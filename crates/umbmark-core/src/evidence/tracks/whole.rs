@@ -17,8 +17,8 @@ const TIME: &str = "time_constant_s";
 
 /// A fit with the shares that it does not tell from 1 kept at 1.
 pub(crate) fn whole(mut fitted: Fitted) -> Fitted {
-    let is_told = |part: &&Part| part.free && part.share().is_some_and(|share| !part.fixed.contains(&share));
-    let parts: Vec<Part> = fitted.model.parts().iter().filter(is_told).cloned().collect();
+    let is_asked = |part: &&Part| part.free && part.share().is_some_and(|share| !part.fixed.contains(&share));
+    let parts: Vec<Part> = fitted.model.parts().iter().filter(is_asked).cloned().collect();
     for part in parts {
         let aicc = |fitted: &Fitted| Alone::new(fitted.clone()).criteria().0;
         let least = aicc(&fitted) + LIKELIER;
@@ -35,8 +35,8 @@ pub(crate) fn whole(mut fitted: Fitted) -> Fitted {
     fitted
 }
 
-/// The model with the share of a part kept at 1: with the lag that it has for its time constant and no delay beside it, and with the time
-/// constant that it has, where the delay takes what the lag is then too much.
+/// The model with the share of a part kept at 1: once with all of the lag as its time constant and no delay, and once with the time constant that
+/// it has and the rest of the lag as the delay.
 fn starts(model: &Model, part: &Part) -> Vec<Model> {
     let name = part.effect.name();
     let Some((share, time)) = part.share().and_then(|share| Some((share, model.get(name, TIME)?))) else {
