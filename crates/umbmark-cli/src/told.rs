@@ -9,8 +9,9 @@ use umbmark_core::diagnose::{Diagnosis, Options};
 use umbmark_core::drift::{Arrived, Watched};
 use umbmark_core::drive::Robot;
 use umbmark_core::evidence::Fit;
+use umbmark_core::learn::GearCalibration;
 use umbmark_core::monte_carlo::{Ensemble, Metric, Sweep, SweepPoint};
-use umbmark_core::result::Study;
+use umbmark_core::result::{Paper, Study};
 use umbmark_core::score::{Convention, Score};
 use umbmark_core::solve::Solution;
 use umbmark_core::survey::Survey;
@@ -27,7 +28,7 @@ use crate::sweep::SweepReport;
 use crate::tracks_report;
 use crate::verb::{
     calibrate as calibrating, changed as changing, compare as comparing, conditions as dividing,
-    diagnose as diagnosing, fit as fitting,
+    diagnose as diagnosing, fit as fitting, paper as publishing,
 };
 use crate::verb::{inspect as inspecting, learn as learning, score as scoring, survey as surveying, watch as watching};
 
@@ -39,6 +40,16 @@ pub fn score(data: Option<&Dataset>, score: &Score, convention: Convention) -> S
 /// Of `calibrate`, beside what `solve` would answer to tests of this size.
 pub fn calibration(robot: &Robot, found: &Calibration, answer: Option<&Solution>, level: f64, size: f64) -> String {
     calibrating::told(robot, found, answer, level, size)
+}
+
+/// Of `calibrate` for drives other than the differential one, beside what `solve` would answer to tests of this size.
+pub fn gears(robot: &Robot, found: &GearCalibration, answer: Option<&Solution>, level: f64, size: f64) -> String {
+    calibrating::gears::told(robot, found, answer, level, size)
+}
+
+/// Of `paper`.
+pub fn paper(found: &Paper) -> String {
+    publishing::told(found)
 }
 
 /// Of `compare`.

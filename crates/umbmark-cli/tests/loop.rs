@@ -2,7 +2,7 @@
 //!
 //! `SNAPSHOTS=overwrite cargo test -p umbmark-cli` writes the golden files anew.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use snapbox::{assert_data_eq, file};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -191,6 +191,13 @@ fn a_fit_is_told_with_intervals_and_written_as_a_model() {
     said(folder.path(), &["fit", ".", "--model", "model.toml", "-o", "model.toml", "--force"], 0);
     let fitted = document(folder.path(), &["fit", ".", "--model", "model.toml"]);
     assert!(fitted["fitted"].as_array().unwrap().len() == 4 && fitted["not_shown"].as_array().unwrap().is_empty());
+    let known = ["fit", ".", "--bound", "wheelbase.e_b=:0.99", "--prior", "wheel_diameter_ratio.e_d=1.05:0.0001"];
+    let fitted = document(folder.path(), &known);
+    let [bound, prior] = [0, 1].map(|k| &fitted["known"][k]);
+    assert_eq!((&bound["value"], &bound["held"], &bound["low"]), (&json!(0.99), &json!(true), &Value::Null));
+    assert!(prior["contradiction"].as_f64().unwrap().abs() > 10.0 && fitted["ended"]["converged"] == true, "{fitted}");
+    let text = said(folder.path(), &known, 0);
+    assert!(text.contains("e_b of wheelbase is held at 0.99") && text.contains("The runs contradict that"), "{text}");
     let scale = umbmark(folder.path(), &["fit", ".", "--add", "scale"]);
     let warned = String::from_utf8_lossy(&scale.stderr).into_owned();
     assert!(warned.starts_with("warning: scale was not fitted: this data cannot separate it"), "{warned}");

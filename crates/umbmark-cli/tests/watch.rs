@@ -63,6 +63,20 @@ fn a_folder_that_grows_is_watched_until_the_robot_changes_and_then_until_it_is_r
 }
 
 #[test]
+fn a_run_that_cannot_be_watched_does_not_pass_for_one_that_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(folder, 24, 24);
+    said(folder, &WATCH, 0);
+    std::fs::create_dir(folder.join("robot/runs")).unwrap();
+    let log: String = (0..50).map(|k| format!("{},{},{}\n", f64::from(k) / 50.0, 20 * k, 20 * k)).collect();
+    std::fs::write(folder.join("robot/runs/cw_50.csv"), format!("t_s,ticks_left,ticks_right\n{log}")).unwrap();
+    let text = flowing(&said(folder, &WATCH, 3));
+    assert!(text.starts_with("24 runs watched, 0 of them new: nothing changed.") && text.contains("cw_50"), "{text}");
+    said(folder, &WATCH[..4], 0);
+}
+
+#[test]
 fn a_state_of_another_robot_or_rate_or_that_is_none_is_refused_by_one_sentence() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

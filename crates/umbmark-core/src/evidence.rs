@@ -17,16 +17,16 @@ pub(crate) mod tracks;
 use crate::dataset::{Dataset, Run};
 use crate::drive::Robot;
 use crate::effect::{Model, ModelError, TestKind};
-use crate::likelihood::Observed;
+use crate::likelihood::{Knowledge, Observed};
 use crate::setup::{Fault, Setup};
-use std::ops::Deref;
+use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 pub(crate) use drives::{Drive, end_poses, tracked};
 pub(crate) use ends::Ends;
 pub use error::FitError;
 pub(crate) use fitted::correlations;
-pub use fitted::{Estimate, Fit, fit, fit_to_returns};
+pub use fitted::{Estimate, Fit, KnownBefore, Leaves, fit, fit_knowing, fit_to_returns};
 pub use memory::memory_of_tests;
 pub(crate) use ratio::{FAR_FIT, STARTS, is_possible};
 
@@ -80,6 +80,9 @@ pub(crate) trait Evidence {
     /// Refuses a model with a formula that is not finite at some point of the path.
     fn check(&self, model: &Model) -> Result<(), ModelError>;
 
+    /// Takes what is known besides the runs, for fits from now on.
+    fn know(&mut self, knowledge: Knowledge);
+
     /// Fits the free parameters of a model.
     fn fit(&self, model: &Model) -> Result<Fit, FitError>;
 
@@ -117,6 +120,15 @@ impl Deref for AnyEvidence {
     type Target = dyn Evidence;
 
     fn deref(&self) -> &Self::Target {
+        match self {
+            AnyEvidence::Ends(ends) => ends,
+            AnyEvidence::Tracks(tracks) => tracks,
+        }
+    }
+}
+
+impl DerefMut for AnyEvidence {
+    fn deref_mut(&mut self) -> &mut Self::Target {
         match self {
             AnyEvidence::Ends(ends) => ends,
             AnyEvidence::Tracks(tracks) => tracks,

@@ -18,7 +18,7 @@ use crate::prose::counted;
 use crate::reference::{KINDS, Kind};
 use crate::run::dead_reckoning::{EndPose, computed_end, return_error};
 use crate::run::{Mended, ReturnError, Run};
-use crate::setup::{Fault, Mounting, Setup};
+use crate::setup::{Fault, Mounting, SIDES, Setup};
 use crate::stats::Measured;
 
 pub use contents::{LogContents, LogPart, ReferenceFound, WheelUnit, WheelsFound, steps_per_turn, usual_rate};
@@ -190,7 +190,9 @@ fn log_checks(logs: &[LogFacts], path: Option<&Path>, setup: Option<&Setup>) -> 
         [first, .., last] => format!(", in {} logs from {first} to {last}", of_these.len()),
         these => format!(", in {}", these.concat()),
     };
-    let found = wheels.map(|wheels| format!("{wheels}{where_it_is}"));
+    let straight = setup.and_then(|setup| setup.mounting).is_some_and(|mounting| !mounting.turns);
+    let unseen = if sound && straight { format!("; {SIDES}") } else { String::new() };
+    let found = wheels.map(|wheels| format!("{wheels}{where_it_is}{unseen}"));
     add("wheels", found, "as named, both counting up when driving forward", sound);
     checks.extend(shape_check(logs, path));
     checks.extend(reference_checks(logs));

@@ -12,6 +12,7 @@ mod beginning;
 mod descent;
 mod fitted;
 mod fitting;
+mod knowledge;
 mod noise;
 mod observed;
 mod outliers;
@@ -23,8 +24,9 @@ mod whiten;
 
 pub use beginning::Taken;
 pub(crate) use beginning::{FAR, of_reference, ratios, stands_for_the_reference};
-pub use fitted::{Fitted, Outlier};
+pub use fitted::{Ended, Fitted, Outlier};
 pub use fitting::{NUISANCE, USUAL_NOISE};
+pub use knowledge::{Knowledge, KnowledgeError, KnownNumber};
 pub use noise::Noise;
 pub(crate) use observed::BLOCK;
 pub use observed::{Block, Column, Growth, Gyro, Observed, ObservedRun, Stretch};

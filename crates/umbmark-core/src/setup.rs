@@ -87,7 +87,12 @@ pub struct Mounting {
     pub gain: Option<Measured>,
     /// Turning by the reference for each metre ahead \[rad/m\]; `None` where nothing is driven.
     pub drift: Option<Measured>,
+    /// Whether the runs turn; if not, exchanged wheels and a mirrored reference look like right ones.
+    pub turns: bool,
 }
+
+/// What runs cannot show that do not turn.
+pub const SIDES: &str = "the runs do not turn, so exchanged wheels and a mirrored reference would look the same";
 
 /// A pose that is wrong.
 #[derive(Clone, Debug, PartialEq)]
@@ -490,6 +495,7 @@ fn mounting(seen: &[Seen], agreement: &Agreement, agreed: impl Fn(&[Beside]) -> 
         scale: by_parts(way && with_position, agreement.scale(), &Agreement::scale),
         gain: by_parts(turns, agreement.turn[0], &|part| part.turn[0]),
         drift: by_parts(way, agreement.turn[1], &|part| part.turn[1]),
+        turns,
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use umbmark_cli::told;
 use umbmark_core::calibrate::{self as core, Options, RadiusWheelbase};
-use umbmark_core::{diagnose, learn, result, solve};
+use umbmark_core::{diagnose, effect, learn as learning, result, solve};
 
 use crate::arguments::threads;
 use crate::dataset::Dataset;
@@ -63,18 +63,29 @@ pub fn calibrate(
     Ok((json(&result::Calibration::new(robot, &calibration, answer.as_ref(), level))?, text))
 }
 
-/// A calibration of any drive by its first effects: the document, the model, and the corrected robot.
+/// A calibration of any drive by its first effects: the document, the text, the model, and the corrected robot.
 #[pyfunction]
-pub fn calibrate_gears(py: Python<'_>, data: &Dataset, level: f64) -> PyResult<(String, Model, Robot)> {
+pub fn calibrate_gears(
+    py: Python<'_>,
+    data: &Dataset,
+    level: f64,
+    learn: bool,
+    #[pyo3(from_py_with = threads)] threads: usize,
+) -> PyResult<(String, String, Model, Robot)> {
     probability("level", level)?;
     let robot = data.0.nominal_robot().map_err(refused)?;
     let shared = Arc::clone(&data.0);
-    let found = watched(py, 1, None, move |_| learn::calibrate_gears(&shared))?.map_err(refused)?;
+    let found = watched(py, threads, None, move |_| learning::calibrate_gears(&shared))?.map_err(refused)?;
     if found.estimates.is_empty() {
         return Err(DataError::new_err(
             "nothing can be calibrated from these runs: drive a closed path in both directions, or measure poses on the way",
         ));
     }
     let document = json(&result::GearCalibration::new(robot, &found, level, &data.0.warnings))?;
-    Ok((document, found.model.into(), Robot(found.corrected)))
+    let (shared, start) = (Arc::clone(&data.0), effect::Model::new(robot));
+    let testing = diagnose::Options::default();
+    let ask = move |watch: &Watch| learn.then(|| watch.work(|watch| solve::solve(&shared, &start, &testing, watch)));
+    let answer = watched(py, threads, None, ask)?.transpose().map_err(refused)?;
+    let text = told::gears(robot, &found, answer.as_ref(), level, testing.size);
+    Ok((document, text, found.model.into(), Robot(found.corrected)))
 }

@@ -11,6 +11,7 @@ use umbmark_core::compare::{self as comparing, Compared};
 use umbmark_core::conditions::conditions as divided;
 use umbmark_core::diagnose::{self as core, Options, first_model};
 use umbmark_core::evidence::FitError;
+use umbmark_core::likelihood::Knowledge;
 use umbmark_core::result::{self, Comparison, TrackComparison};
 use umbmark_core::solve::{self as solving, Solution};
 use umbmark_core::survey::survey as surveyed;
@@ -69,7 +70,11 @@ pub fn diagnose(
     Ok((json(&result::Diagnosis::new(&diagnosis, &options))?, text, diagnosis.model.into()))
 }
 
-/// A model with its free effects fitted, those of `add` too, but for the parameters of `fix`, at their values or others.
+/// Names of parameters with two numbers each: bounds, or means and standard deviations.
+type Pairs = Vec<(String, (f64, f64))>;
+
+/// A model with its free effects fitted, those of `add` too, but for the parameters of `fix`, at their values or others; within bounds, and
+/// with earlier measurements.
 #[pyfunction]
 pub fn fit(
     py: Python<'_>,
@@ -77,17 +82,17 @@ pub fn fit(
     model: Option<&Model>,
     add: Vec<String>,
     fix: Vec<(String, Option<f64>)>,
+    knowledge: (Pairs, Pairs),
     level: f64,
 ) -> PyResult<(String, String, Model)> {
     probability("level", level)?;
+    let knowledge = known(knowledge)?;
     let mut model = asked(py, data, model)?;
     for effect in &add {
         model.add(effect).map_err(refused)?.free = true;
     }
     for (name, value) in &fix {
-        let (effect, parameter) = name
-            .split_once('.')
-            .ok_or_else(|| PyValueError::new_err(format!("fix must name EFFECT.PARAMETER, got \"{name}\"")))?;
+        let (effect, parameter) = number_of("fix", name)?;
         value.map_or(Ok(()), |value| model.set(effect, parameter, value)).map_err(refused)?;
         model.fix(effect, parameter).map_err(refused)?;
     }
@@ -97,9 +102,29 @@ pub fn fit(
         ));
     }
     let shared = Arc::clone(&data.0);
-    let fitted = watched(py, 1, None, move |_| evidence::fit(&shared, &model))?.map_err(refused)?;
+    let fit = move |_: &_| evidence::fit_knowing(&shared, &model, knowledge);
+    let fitted = watched(py, 1, None, fit)?.map_err(refused)?;
     let (document, text) = (json(&result::Fitted::new(&fitted, level))?, told::fit(&fitted, level));
     Ok((document, text, Model { noise: fitted.noise, ..fitted.model.into() }))
+}
+
+/// Bounds and earlier measurements.
+fn known((bounds, priors): (Pairs, Pairs)) -> PyResult<Knowledge> {
+    let mut knowledge = Knowledge::default();
+    for (name, (low, high)) in &bounds {
+        let (effect, parameter) = number_of("bounds", name)?;
+        knowledge.bound(effect, parameter, *low, *high).map_err(refused)?;
+    }
+    for (name, (mean, sd)) in &priors {
+        let (effect, parameter) = number_of("priors", name)?;
+        knowledge.measured(effect, parameter, *mean, *sd).map_err(refused)?;
+    }
+    Ok(knowledge)
+}
+
+fn number_of<'a>(argument: &str, name: &'a str) -> PyResult<(&'a str, &'a str)> {
+    let refuse = || PyValueError::new_err(format!("{argument} must name EFFECT.PARAMETER, got \"{name}\""));
+    name.split_once('.').ok_or_else(refuse)
 }
 
 /// The whole loop, from a model where one is given, and the model that was learnt.

@@ -2,6 +2,7 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use umbmark_cli::told;
 use umbmark_core::paper::{self as core, Bench, PaperError};
 use umbmark_core::result::Paper;
 
@@ -25,7 +26,7 @@ const EXPERIMENTS: [(&str, Experiment); 7] = [
 /// Tests of each robot that a table may be made of.
 const TRIALS: std::ops::RangeInclusive<u64> = 10..=10_000_000;
 
-/// Experiments of the paper, as one document; all of them where none is named.
+/// Experiments of the paper, as one document and in words; all of them where none is named.
 #[pyfunction]
 pub fn paper(
     py: Python<'_>,
@@ -34,7 +35,7 @@ pub fn paper(
     #[pyo3(from_py_with = seed)] seed: u64,
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<String> {
+) -> PyResult<(String, String)> {
     if !TRIALS.contains(&trials) {
         let (least, most) = (TRIALS.start(), TRIALS.end());
         return Err(PyValueError::new_err(format!("n must be between {least} and {most}, got {trials}")));
@@ -50,5 +51,6 @@ pub fn paper(
         }
         Ok::<_, PaperError>(found)
     })?;
-    json(&found.map_err(refused)?)
+    let found = found.map_err(refused)?;
+    Ok((json(&found)?, told::paper(&found)))
 }

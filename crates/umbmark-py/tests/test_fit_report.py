@@ -1,6 +1,7 @@
 """A fit as text: the numbers of the result, rounded, and the residuals in mm and deg."""
 
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -110,7 +111,7 @@ def test_a_report_of_a_fit_tells_its_residuals(watched: umbmark.Dataset) -> None
     chi2, count = (whitened**2).sum(), whitened.size
     assert f"chi2             {chi2:.1f} of {count} residuals, {chi2 / count:.3f} each" in text
     assert fitted.tracks().reduced_chi2 == pytest.approx(chi2 / count)
-    assert "AICc" not in text
+    assert f"AICc             {fitted.aicc:.2f}" in text
 
 
 def test_a_report_of_learning_has_the_criteria_of_its_last_step(watched: umbmark.Dataset) -> None:
@@ -126,3 +127,88 @@ def test_a_report_without_tracks_says_so() -> None:
     text = umbmark.diagnose(data, draws=99).fit_report()
     assert text.splitlines()[0] == "2 parameters, 6 runs"
     assert text.endswith("residuals        of return poses alone: see compare")
+
+
+def test_a_prior_is_weighed_against_the_runs_and_a_contradiction_is_told(
+    watched: umbmark.Dataset,
+) -> None:
+    model = umbmark.Model().add("wheelbase", free=True).add("floor_slope", free=True)
+    alone = umbmark.fit(watched, model)
+    own = next(one for one in alone.fitted if one.parameter == "e_b")
+    error = own.standard_error
+    assert error is not None
+    mean = own.value + 5 * error
+    fitted = umbmark.fit(watched, model, priors={"wheelbase.e_b": (mean, error)})
+    both = next(one for one in fitted.fitted if one.parameter == "e_b")
+    # Half way between them, and known better by the square root of two.
+    assert both.value == pytest.approx(own.value + 2.5 * error, abs=0.3 * error)
+    assert both.standard_error == pytest.approx(error / np.sqrt(2), rel=0.15)
+    [known] = fitted.known
+    assert (known.mean, known.sd, known.low, known.held) == (mean, error, None, False)
+    assert known.contradiction == pytest.approx(-5 / np.sqrt(2), abs=0.3)
+    assert "The runs contradict" in str(fitted)
+    assert "The runs contradict" not in str(
+        umbmark.fit(watched, model, priors={"wheelbase.e_b": (own.value, error)})
+    )
+    assert f"prior {mean:g} ± {error:g}" in fitted.fit_report()
+
+
+def test_a_parameter_that_ends_at_its_bound_is_said_to_be_held(watched: umbmark.Dataset) -> None:
+    fitted = umbmark.fit(watched, bounds={"wheelbase.e_b": (None, 1.005)})
+    assert fitted.model.get("wheelbase", "e_b") == 1.005
+    assert all(one.parameter != "e_b" for one in fitted.fitted)
+    [known] = fitted.known
+    assert (known.low, known.high, known.value, known.held) == (None, 1.005, 1.005, True)
+    assert "wheelbase" not in fitted.not_shown
+    assert "e_b of wheelbase is held at 1.005" in " ".join(str(fitted).split())
+    assert "bounds :1.005 (held there)" in fitted.fit_report()
+    free = umbmark.fit(watched, bounds={"wheelbase.e_b": (0.5, 2)})
+    assert not free.known[0].held
+    assert free.fitted[0].value == pytest.approx(umbmark.fit(watched).fitted[0].value, abs=1e-6)
+
+
+def test_a_fit_says_how_it_ended_and_what_it_leaves(watched: umbmark.Dataset) -> None:
+    fitted = umbmark.fit(watched, add=["floor_slope"])
+    tracks = fitted.tracks()
+    assert fitted.ended.converged
+    assert fitted.ended.steps > 0
+    assert fitted.chi2 == pytest.approx(tracks.chi2, rel=0.01)
+    assert fitted.residual_count == tracks.whitened_count
+    assert fitted.rmse_m == pytest.approx(tracks.rms_m, rel=0.05)
+    assert f"AICc             {fitted.aicc:.2f}" in fitted.fit_report()
+    worse = umbmark.fit(watched)
+    assert None not in (fitted.aicc, fitted.bic, worse.aicc, worse.bic)
+    assert fitted.aicc < worse.aicc  # type: ignore[operator]
+    assert fitted.bic < worse.bic  # type: ignore[operator]
+    returns = umbmark.fit(umbmark.simulate(TRUTH, PATH, runs=5, reference_rate_hz=0))
+    assert (returns.chi2, returns.residual_count) == (None, None)
+    assert returns.aicc is not None
+    assert returns.rmse_m is not None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"bounds": {"e_b": (0, 1)}}, ValueError, 'bounds must name EFFECT.PARAMETER, got "e_b"'),
+        (
+            {"bounds": {"wheelbase.e_b": 1}},
+            TypeError,
+            r'bounds\["wheelbase.e_b"\] must be \(low, h',
+        ),
+        ({"bounds": {"wheelbase.e_b": (2, 1)}}, ValueError, "LOW < HIGH, got 2 and 1"),
+        ({"bounds": [("wheelbase.e_b", (0, 1))]}, TypeError, "bounds must be a mapping"),
+        ({"priors": {"wheelbase.e_b": (1, 0)}}, ValueError, "above 0, got 1 and 0"),
+        (
+            {"priors": {"wheelbase.e_b": ("1 m", 0)}},
+            TypeError,
+            r'priors\["wheelbase.e_b"\]\[0\] must',
+        ),
+        ({"priors": {"crab.angle_rad": (1, 1)}}, ValueError, "the model lacks its effect; add it"),
+        ({"priors": {"crabs.angle_rad": (1, 1)}}, ValueError, 'there is no effect "crabs"'),
+    ],
+)
+def test_bounds_and_priors_that_mean_nothing_are_refused_by_their_names(
+    watched: umbmark.Dataset, arguments: dict[str, Any], error: type[Exception], message: str
+) -> None:
+    with pytest.raises(error, match=message):
+        umbmark.fit(watched, **arguments)

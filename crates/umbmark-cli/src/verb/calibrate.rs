@@ -1,6 +1,6 @@
 //! `umbmark calibrate`: from measured runs to the true wheel diameters and wheelbase.
 
-mod gears;
+pub mod gears;
 
 use std::io::Write;
 use std::path::PathBuf;

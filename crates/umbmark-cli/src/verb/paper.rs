@@ -4,7 +4,9 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use umbmark_core::paper::{self, Bench, BothWays, LinkError, PaperError, PublishedNumber};
+use umbmark_core::paper::{
+    self, Bench, BothWays, BumpPlace, Cluster, LinkError, Masking, PaperError, PublishedNumber, TableOne, TableTwo,
+};
 use umbmark_core::result::Paper;
 use umbmark_core::watch::Watch;
 
@@ -53,36 +55,49 @@ pub struct Arguments {
     trials: u64,
 }
 
-/// Adds what an experiment found, and gives it in words.
-type Run = fn(&Bench, &mut Paper) -> Result<String, PaperError>;
+/// Adds what an experiment found.
+type Run = fn(&Bench, &mut Paper) -> Result<(), PaperError>;
 
 const EXPERIMENTS: [(Experiment, Run); 7] = [
-    (Experiment::TableOne, table_one),
-    (Experiment::TableTwo, table_two),
-    (Experiment::FigureTwo, masking),
-    (Experiment::FigureFive, clusters),
-    (Experiment::FigureSix, bump_places),
-    (Experiment::FigureEight, figure_eight),
-    (Experiment::Rectangle, rectangle),
+    (Experiment::TableOne, |bench, all| paper::table_one(bench).map(|found| all.table_1 = Some(found))),
+    (Experiment::TableTwo, |bench, all| paper::table_two(bench).map(|found| all.table_2 = Some(found))),
+    (Experiment::FigureTwo, |_, all| paper::masking().map(|found| all.figure_2 = Some(found))),
+    (Experiment::FigureFive, |bench, all| paper::clusters(bench.seed).map(|found| all.figure_5 = Some(found))),
+    (Experiment::FigureSix, |_, all| paper::bump_places().map(|found| all.figure_6 = Some(found))),
+    (Experiment::FigureEight, |_, all| paper::figure_eight().map(|found| all.figure_eight = Some(found))),
+    (Experiment::Rectangle, |_, all| paper::rectangle().map(|found| all.rectangle = Some(found))),
 ];
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let wanted = |experiment: Experiment| [experiment, Experiment::All].contains(&arguments.experiment);
     let (trials, seed) = (arguments.trials, session.seed());
-    let (mut found, mut texts) = (Paper::new(seed), Vec::new());
+    let mut found = Paper::new(seed);
     for (_, run) in EXPERIMENTS.iter().filter(|(experiment, _)| wanted(*experiment)) {
-        let text = session.told("% of the tests", |progress| {
+        session.told("% of the tests", |progress| {
             let stop = AtomicBool::new(false);
             run(&Bench { trials, seed, watch: &Watch::new(&stop, progress) }, &mut found)
-        });
-        texts.push(text??);
+        })??;
     }
     if session.json() {
         session.print_json(&found)?;
     } else {
-        write!(session.out(), "{}", wrapped(&texts.join("\n\n\n")))?;
+        write!(session.out(), "{}", told(&found))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// All experiments that were made, in words.
+pub fn told(all: &Paper) -> String {
+    let texts = [
+        all.table_1.as_ref().map(table_one),
+        all.table_2.as_ref().map(table_two),
+        all.figure_2.as_ref().map(masking),
+        all.figure_5.as_deref().map(|found| clusters(found, all.seed)),
+        all.figure_6.as_deref().map(bump_places),
+        all.figure_eight.as_deref().map(figure_eight),
+        all.rectangle.as_deref().map(rectangle),
+    ];
+    wrapped(&texts.into_iter().flatten().collect::<Vec<_>>().join("\n\n\n"))
 }
 
 /// Cells of a published number, in a unit of which so many are one of SI.
@@ -97,8 +112,7 @@ fn cells(place: &PublishedNumber, factor: f64) -> Vec<String> {
     ]
 }
 
-fn table_one(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
-    let found = all.table_1.insert(paper::table_one(bench)?);
+fn table_one(found: &TableOne) -> String {
     let (mut rows, mut notes) = (Vec::new(), String::new());
     for row in &found.rows {
         let mut words = vec![row.row.to_owned()];
@@ -112,17 +126,16 @@ fn table_one(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
     let error = |e: &LinkError| format!("  {} of {} off by {:.2e}\n", e.parameter, e.effect, e.size);
     let would: String = found.clapper_would_take.iter().map(error).collect();
     let header = ["Table I [mm]", "E_max,sys", "simul.", "middle 95 %", "below it", "sigma", "simul."];
-    Ok(format!(
+    format!(
         "{}\n\n{} simulated tests of each. \"below it\": the share of them below the published E_max,sys; simul.: their mean.\n\
          Noise with the CLAPPER's published sigma would give 13 mm at most in 95 % of tests (2.71 sigma/sqrt(5)). Its 22 mm are therefore \
          systematic. The paper does not give the cause, and the simulation has none. Each of these alone would be enough:\n{would}{notes}",
         table(&header, rows),
         found.trials
-    ))
+    )
 }
 
-fn table_two(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
-    let found = all.table_2.insert(paper::table_two(bench)?);
+fn table_two(found: &TableTwo) -> String {
     let rows = found.columns.iter().map(|column| {
         let exactly = column.heading_noise_rad == 0.0;
         let robot = if exactly { column.robot.to_owned() } else { format!("{} +-0.4", column.robot) };
@@ -134,7 +147,7 @@ fn table_two(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
     });
     let header = ["Table II [deg]", "printed", "Eq. (5)", "simul.", "middle 95 %", "below it", "its runs"];
     let (on, off) = (found.clapper_corrected_rad, found.clapper_uncorrected_rad);
-    Ok(format!(
+    format!(
         "{}\n\n{} simulated tests of each, ten bumps of 10 mm under the inside wheel on the first leg.\n\
          Eq. (5): half of it, the mean over all runs, from the printed headings; the printed 8.35 of the LabMate needs \
          its two systematic means exchanged. \"its runs\": the least and the largest deviation of a single run.\n\
@@ -148,7 +161,7 @@ fn table_two(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
         off.to_degrees(),
         on.to_degrees(),
         off / on
-    ))
+    )
 }
 
 /// Distances and headings, ccw and cw.
@@ -165,20 +178,18 @@ fn both_ways(rows: &[BothWays]) -> String {
 }
 
 /// Figs. 2 to 4.
-fn masking(_: &Bench, all: &mut Paper) -> Result<String, PaperError> {
-    let found = all.figure_2.insert(paper::masking()?);
-    Ok(format!(
+fn masking(found: &Masking) -> String {
+    format!(
         "Figures 2 to 4: errors that cancel each other in one direction\n\n{}\n\nE_d = {:.5}, E_b = {:.5}, LabMate, 4 x 4 m, \
          exact kinematics without noise",
         both_ways(&found.rows),
         found.e_d,
         found.e_b
-    ))
+    )
 }
 
 /// Fig. 5: one test of the uncalibrated LabMate.
-fn clusters(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
-    let found = all.figure_5.insert(paper::clusters(bench.seed)?);
+fn clusters(found: &[Cluster], seed: u64) -> String {
     let mm = |v: f64| format!("{:.0}", v * 1e3);
     let mut rows = Vec::new();
     for cluster in found.iter() {
@@ -189,41 +200,37 @@ fn clusters(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
         let [x, y] = cluster.centre_m;
         rows.push(vec![format!("{name} centre of gravity"), mm(x), mm(y), mm(cluster.r_m)]);
     }
-    Ok(format!(
-        "Figure 5: return positions of one test, trc-labmate-nocal, seed {}\n\n{}",
-        bench.seed,
+    format!(
+        "Figure 5: return positions of one test, trc-labmate-nocal, seed {seed}\n\n{}",
         table(&["", "ex [mm]", "ey [mm]", "r [mm]"], rows)
-    ))
+    )
 }
 
 /// Fig. 6: ten bumps at the beginning of the first leg, all along it, and at its end.
-fn bump_places(_: &Bench, all: &mut Paper) -> Result<String, PaperError> {
-    let found = all.figure_6.insert(paper::bump_places()?);
+fn bump_places(found: &[BumpPlace]) -> String {
     let rows = found.iter().map(|place| {
         let shift = format!("{:.0}", place.return_position_m * 1e3);
         vec![place.bumps.to_owned(), shift, format!("{:.2}", place.return_heading_rad.to_degrees())]
     });
-    Ok(format!(
+    format!(
         "Figure 6: ten 10 mm bumps on the first leg, ccw, LabMate, exact kinematics without noise\n\n{}",
         table(&["", "return position [mm]", "return heading [deg]"], rows)
-    ))
+    )
 }
 
 /// What a figure-eight shows of E_d and E_b.
-fn figure_eight(_: &Bench, all: &mut Paper) -> Result<String, PaperError> {
-    let found = all.figure_eight.insert(paper::figure_eight()?);
-    Ok(format!(
+fn figure_eight(found: &[BothWays]) -> String {
+    format!(
         "Section 3.1: the figure-eight (two circles of 2 m) hides E_d from a tape measure and E_b from a compass, \
          in both directions of driving: with positions alone it has the shortcoming named in the paper, with headings it does not\n\n{}",
         both_ways(found)
-    ))
+    )
 }
 
 /// The 7 x 4 m rectangle beside the square.
-fn rectangle(_: &Bench, all: &mut Paper) -> Result<String, PaperError> {
-    let found = all.rectangle.insert(paper::rectangle()?);
-    Ok(format!(
+fn rectangle(found: &[BothWays]) -> String {
+    format!(
         "Section 4.5: the rectangle instead of the square, trc-labmate-nocal, exact kinematics without noise\n\n{}",
         both_ways(found)
-    ))
+    )
 }

@@ -36,7 +36,7 @@ pub struct Arguments {
     #[arg(long, value_name = "RUN")]
     restart: Option<String>,
 
-    /// Exit with code 3 if the robot changed
+    /// Exit with code 3 if the robot changed, or if there is no new run but some that cannot be watched
     #[arg(long)]
     check: bool,
 }
@@ -64,7 +64,9 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         let verbose = session.verbose();
         write!(session.out(), "{}", told(&watched, &arrived, verbose))?;
     }
-    Ok(if arguments.check && watched.change.is_some() { ExitCode::from(3) } else { ExitCode::SUCCESS })
+    let is_unwatched = arrived.new == 0 && !arrived.left_out.is_empty();
+    let is_accused = arguments.check && (watched.change.is_some() || is_unwatched);
+    Ok(if is_accused { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }
 
 /// The sentence and, where they are wanted, the runs.

@@ -261,8 +261,19 @@ impl Remains {
         )
     }
 
+    /// What all noise together would leave of positions \[m\].
+    fn of_noise(&self) -> f64 {
+        self.chance.iter().map(|chance| chance.position.powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// How many times as much is left as the noise makes, if that is clearly more.
+    pub fn excess(&self) -> Option<f64> {
+        let times = self.position.rms / self.of_noise();
+        (times.is_finite() && times > UNDONE).then_some(times)
+    }
+
     fn of_chance(&self) -> Option<String> {
-        let total = self.chance.iter().map(|chance| chance.position.powi(2)).sum::<f64>().sqrt();
+        let total = self.of_noise();
         if total > UNDONE * self.position.rms {
             return Some(format!(
                 "The fitted noise alone would leave {}: part of the noise from pose to pose does not accumulate, as with whole encoder ticks",
@@ -274,7 +285,9 @@ impl Remains {
         told.sort_by(|a, b| b.position.total_cmp(&a.position));
         let one = |chance: &&Chance| format!("the {} leaves {}", chance.source, MILLIMETRES.text(chance.position));
         let told: Vec<String> = told.iter().map(one).collect();
-        (!told.is_empty()).then(|| format!("By chance alone, {}", told.join(", ")))
+        let excess = self.excess().map(|times| format!(". What is left is {times:.1} times all of that together"));
+        let excess = excess.unwrap_or_default();
+        (!told.is_empty()).then(|| format!("By chance alone, {}{excess}", told.join(", ")))
     }
 
     fn of_disturbances(&self) -> Option<String> {
@@ -463,6 +476,23 @@ mod tests {
             let shown = (0..400).filter(|seed| Remains::of(&trails(count, 0.0, 1000 + seed), 0.95).repeats()).count();
             assert!(shown <= 20, "{count}: {shown} of 400");
         }
+    }
+
+    #[test]
+    fn an_error_far_above_what_the_noise_makes_is_said_to_be() {
+        let chance = |position: f64| Chance { source: "noise of the wheels", position, heading: 0.0 };
+        let mut remains = Remains::of(&trails(4, 0.0, 3), 0.95);
+        let rms = remains.position.rms;
+        for (noise, excess) in
+            [(vec![chance(0.6 * rms), chance(0.8 * rms)], None), (vec![chance(0.5 * rms)], Some(2.0))]
+        {
+            remains.chance = noise;
+            assert_eq!(remains.excess().map(|times| (10.0 * times).round() / 10.0), excess);
+            let said = remains.of_chance().unwrap();
+            assert_eq!(said.contains("What is left is 2.0 times all of that"), excess.is_some(), "{said}");
+        }
+        remains.chance = Vec::new();
+        assert_eq!(remains.excess(), None);
     }
 
     #[test]

@@ -269,6 +269,12 @@ impl Model {
         Ok(())
     }
 
+    /// Lets fits change a parameter of a free effect again.
+    pub(crate) fn release(&mut self, effect: &str, parameter: &str) {
+        let own = self.parts.iter_mut().filter(|part| part.effect.name() == effect);
+        own.for_each(|part| part.fixed.retain(|name| *name != parameter));
+    }
+
     /// Whether a fit may change some of its values.
     pub fn is_free(&self) -> bool {
         !self.free_places().is_empty()

@@ -10,6 +10,7 @@ use crate::dataset::{Dataset, Levels};
 use crate::drive::Robot;
 use crate::effect::{Evaluate, Model, ModelError};
 use crate::geometry::{Pose2, wrap};
+use crate::likelihood::Knowledge;
 use crate::path::{Direction, Path};
 use crate::replay::Track;
 use crate::setup::{Fault, Setup, Suspicion};
@@ -38,6 +39,8 @@ pub(crate) struct Ends {
     pub setup: Arc<Setup>,
     /// Why these return errors are doubtful.
     pub doubts: Vec<Suspicion>,
+    /// What is known of the numbers of a model besides the runs.
+    knowledge: Arc<Knowledge>,
 }
 
 /// One run.
@@ -83,6 +86,7 @@ impl Ends {
             conditions: Levels::of(data).into(),
             setup: Arc::default(),
             doubts: Vec::new(),
+            knowledge: Arc::default(),
         };
         for drive in drives {
             ends.push(drive);
@@ -217,11 +221,17 @@ impl Evidence for Ends {
         self.tracks(model.varies()).into_iter().try_for_each(|track| track.check(model))
     }
 
+    fn know(&mut self, knowledge: Knowledge) {
+        self.knowledge = Arc::new(knowledge);
+    }
+
     fn fit(&self, model: &Model) -> Result<Fit, FitError> {
         self.check_columns()?;
-        let Fitted { model, estimates, covariance, .. } = Fitted::new(self, model)?;
+        let fitted = Fitted::new(self, model)?;
+        let leaves = fitted.leaves(self);
+        let Fitted { model, estimates, covariance, ended, .. } = fitted;
         let correlations = correlations(covariance.as_ref());
-        let setup = Arc::clone(&self.setup);
+        let (setup, knowledge) = (Arc::clone(&self.setup), Arc::clone(&self.knowledge));
         Ok(Fit {
             model,
             estimates,
@@ -231,6 +241,10 @@ impl Evidence for Ends {
             usual_noise: false,
             setup,
             taken: Vec::new(),
+            ended,
+            leaves,
+            knowledge,
+            without_priors: Vec::new(),
         })
     }
 }

@@ -1,6 +1,7 @@
 //! Why a model cannot be fitted.
 
 use crate::effect::ModelError;
+use crate::likelihood::KnowledgeError;
 use crate::replay::ReplayError;
 use crate::setup::Fault;
 
@@ -58,6 +59,9 @@ pub enum FitError {
         /// Which.
         faults: Vec<Fault>,
     },
+    /// Bounds or earlier measurements that mean nothing for the model.
+    #[error(transparent)]
+    Knowledge(#[from] KnowledgeError),
     /// A fit that did not converge.
     #[error("the fit of the model {how}; fix some of its parameters (free = false)")]
     NotConverged {

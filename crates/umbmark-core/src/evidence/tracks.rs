@@ -12,7 +12,7 @@ use super::{Estimate, Evidence, Fit, FitError, Level, correlations, robot_of};
 use crate::dataset::Dataset;
 use crate::drive::Robot;
 use crate::effect::{Model, ModelError};
-use crate::likelihood::{Fitted, Noise, Observed};
+use crate::likelihood::{Fitted, Knowledge, KnownNumber, Noise, Observed};
 use crate::setup::{Fault, Setup};
 use std::sync::Arc;
 
@@ -50,8 +50,16 @@ impl Evidence for Observed {
         self.tracks().try_for_each(|track| track.check(model))
     }
 
+    fn know(&mut self, knowledge: Knowledge) {
+        self.knowledge = Arc::new(knowledge);
+    }
+
     fn fit(&self, model: &Model) -> Result<Fit, FitError> {
-        let mut fit = told(fit_alone(self, model)?.into_fitted());
+        let mut fit = told(fit_within(self, model)?);
+        // A bound fixes a number in this fit only: numbers with bounds are free ones.
+        for KnownNumber { effect, parameter, .. } in self.knowledge.numbers() {
+            fit.model.release(effect, parameter);
+        }
         // What these runs do not show keeps its values.
         for part in model.parts() {
             if fit.model.parts().iter().all(|own| own.effect.name() != part.effect.name()) {
@@ -68,12 +76,50 @@ pub(crate) fn fit_alone(observed: &Observed, model: &Model) -> Result<Alone, Fit
     Ok(trusted(fitted)?)
 }
 
+/// The same with the values that end at a bound kept there: the noise is that beside these, and nothing stands for them.
+fn fit_within(observed: &Observed, model: &Model) -> Result<Alone, FitError> {
+    let mut kept = model.clone();
+    loop {
+        let alone = fit_alone(observed, &kept)?;
+        let fitted = alone.fitted();
+        let held = fitted.observed.knowledge.numbers().iter().filter(|number| {
+            fitted.model.place_of(&number.effect, &number.parameter).is_some_and(|place| fitted.held.contains(&place))
+        });
+        let held: Vec<KnownNumber> = held.cloned().collect();
+        if held.is_empty() {
+            return Ok(alone);
+        }
+        for KnownNumber { effect, parameter, .. } in held {
+            if let Some(bound) = fitted.model.get(&effect, &parameter) {
+                kept.set(&effect, &parameter, bound)?;
+            }
+            kept.fix(&effect, &parameter)?;
+        }
+    }
+}
+
 /// A fit as it is reported.
-pub(crate) fn told(fitted: Fitted) -> Fit {
+pub(crate) fn told(alone: Alone) -> Fit {
+    let leaves = alone.leaves();
+    let fitted = alone.into_fitted();
     let (estimates, correlations) = (estimates(&fitted), correlations(fitted.covariance.as_ref()));
-    let Fitted { model, noise, outliers, usual_noise, taken, observed, .. } = fitted;
-    let (noise, setup) = (Some(noise), observed.setup);
-    Fit { model, estimates, correlations, noise, outliers, usual_noise, setup, taken }
+    let Fitted { model, noise, outliers, usual_noise, taken, observed, ended, .. } = fitted;
+    let (noise, setup, knowledge) = (Some(noise), observed.setup, observed.knowledge);
+    let without_priors = Vec::new();
+    Fit {
+        model,
+        estimates,
+        correlations,
+        noise,
+        outliers,
+        usual_noise,
+        setup,
+        taken,
+        ended,
+        leaves,
+        knowledge,
+        without_priors,
+    }
 }
 
 /// Fits the free parameters of a model to the innovations, starting with what the motion says of the reference.

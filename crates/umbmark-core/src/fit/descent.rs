@@ -1,6 +1,7 @@
 //! The steps of Levenberg and Marquardt.
 
 use super::covariance::column_lengths;
+use super::known::AllKnown;
 use super::memory::Memory;
 use super::outcome::{Fit, Termination};
 use super::problem::{Options, Problem};
@@ -33,14 +34,15 @@ const MOST_DAMPING: f64 = 1e12;
 /// assert!((fit.values[0] - 2.0).abs() < 1e-9 && (fit.values[1] + 2f64.ln()).abs() < 1e-9);
 /// ```
 pub fn least_squares(problem: &impl Problem, start: &[f64], options: &Options) -> Fit {
-    let at = Point::new(problem, start.to_vec());
+    let known = AllKnown(problem.known());
+    let at = Point::new(problem, known.nearest(start.to_vec()), &known);
     if !at.cost.is_finite() {
         return at.stopped(0, Termination::NotFinite);
     }
     if start.is_empty() {
         return at.stopped(0, Termination::SmallStep);
     }
-    let mut descent = Descent::new(at, options);
+    let mut descent = Descent::new(at, known, options);
     for iteration in 1..=options.iterations {
         if let Some(termination) = descent.step(problem) {
             return descent.at.stopped(iteration, termination);
@@ -52,6 +54,7 @@ pub fn least_squares(problem: &impl Problem, start: &[f64], options: &Options) -
 /// A fit on its way.
 struct Descent<'a> {
     options: &'a Options,
+    known: AllKnown,
     at: Point,
     /// The greatest length that each column of the Jacobian has had.
     lengths: Vec<f64>,
@@ -63,11 +66,11 @@ struct Descent<'a> {
 }
 
 impl Descent<'_> {
-    fn new(at: Point, options: &Options) -> Descent<'_> {
+    fn new(at: Point, known: AllKnown, options: &Options) -> Descent<'_> {
         let lengths = vec![0.0_f64; at.values.len()];
         let damping = if options.cautious { FIRST_DAMPING } else { LEAST_DAMPING };
         let memory = options.frugal.then(Memory::default);
-        Descent { options, at, lengths, damping, memory, refused: false }
+        Descent { options, known, at, lengths, damping, memory, refused: false }
     }
 
     /// Tries one step; says why no further one is needed.
@@ -75,16 +78,19 @@ impl Descent<'_> {
         for (length, now) in self.lengths.iter_mut().zip(column_lengths(&self.at.jacobian)) {
             *length = length.max(now);
         }
-        let plain = damped_step(&self.at.jacobian, &self.at.residuals, &self.lengths, self.damping);
+        let (plain, ends_at_bound) = self.plain_step();
         let is_undamped = self.damping <= LEAST_DAMPING;
-        if self.memory.is_some() && !self.refused && self.at.expected_decrease(&plain) <= self.tolerance() {
+        let is_inside = !ends_at_bound && !self.refused;
+        if self.memory.is_some() && is_inside && self.at.expected_decrease(&plain) <= self.tolerance() {
             // A damped step can gain very little although the minimum is still far away.
             self.damping = LEAST_DAMPING;
             return is_undamped.then_some(Termination::SmallDecrease);
         }
-        let learnt = self.memory.as_mut().and_then(|memory| memory.learn(&self.at.values, &self.at.jacobian, &plain));
+        // Earlier steps that ended at a bound say nothing of the next.
+        let memory = self.memory.as_mut().filter(|_| !self.known.is_bounded());
+        let learnt = memory.and_then(|memory| memory.learn(&self.at.values, &self.at.jacobian, &plain));
         let step = learnt.as_ref().unwrap_or(&plain);
-        let next = Point::new(problem, self.at.values.iter().zip(step.iter()).map(|(p, d)| p + d).collect());
+        let next = Point::new(problem, self.known.nearest(self.at.moved(step)), &self.known);
         let is_small = self.is_small(step);
         let decrease = self.at.cost - next.cost;
         // Both sums agree to rounding, so they cannot decide which point is better. The step comes from the gradient and is more exact:
@@ -115,6 +121,33 @@ impl Descent<'_> {
         None
     }
 
+    /// The damped step within the bounds, and whether it ends at one that it would exceed. What is at a bound and would leave it stays; what
+    /// reaches one on the way ends there, and the others step as is best beside that.
+    fn plain_step(&self) -> (DVector<f64>, bool) {
+        let Point { values, residuals, jacobian, held, .. } = &self.at;
+        if !self.known.is_bounded() {
+            return (damped_step(jacobian, residuals, &self.lengths, self.damping), false);
+        }
+        let mut fixed: Vec<Option<f64>> = held.iter().map(|held| held.then_some(0.0)).collect();
+        let mut ends_at_bound = false;
+        loop {
+            let (mut left, mut free, mut lengths) = (residuals.clone(), jacobian.clone(), self.lengths.clone());
+            for (k, by) in fixed.iter().enumerate().filter_map(|(k, by)| Some((k, (*by)?))) {
+                left.axpy(by, &jacobian.column(k), 1.0);
+                free.column_mut(k).fill(0.0);
+                lengths[k] = 0.0;
+            }
+            let mut step = damped_step(&free, &left, &lengths, self.damping);
+            fixed.iter().enumerate().for_each(|(k, by)| step[k] = by.unwrap_or(step[k]));
+            let ends = self.at.moved(&step);
+            let within = self.known.nearest(ends.clone());
+            let exceeds = |k: &usize| fixed[*k].is_none() && within[*k] != ends[*k];
+            let Some(k) = (0..values.len()).find(exceeds) else { return (step, ends_at_bound) };
+            fixed[k] = Some(within[k] - values[k]);
+            ends_at_bound = true;
+        }
+    }
+
     /// A decrease of the sum of squares below this is negligible.
     fn tolerance(&self) -> f64 {
         self.options.decrease_tolerance * self.at.cost
@@ -132,14 +165,21 @@ struct Point {
     values: Vec<f64>,
     residuals: DVector<f64>,
     jacobian: DMatrix<f64>,
+    /// Which parameters are at a bound beyond which the cost falls.
+    held: Vec<bool>,
     cost: f64,
 }
 
 impl Point {
-    fn new(problem: &impl Problem, values: Vec<f64>) -> Point {
-        let (residuals, jacobian) = problem.both(&values);
-        let cost = residuals.norm_squared();
-        Point { values, residuals, jacobian, cost }
+    fn new(problem: &impl Problem, values: Vec<f64>, known: &AllKnown) -> Point {
+        let (residuals, jacobian) = known.with_priors(&values, problem.both(&values));
+        let (held, cost) = (known.held(&values, &residuals, &jacobian), residuals.norm_squared());
+        Point { values, residuals, jacobian, held, cost }
+    }
+
+    /// The values after a step.
+    fn moved(&self, step: &DVector<f64>) -> Vec<f64> {
+        self.values.iter().zip(step.iter()).map(|(p, d)| p + d).collect()
     }
 
     /// By how much a step would lower the sum of squares of a linear problem.
@@ -149,7 +189,8 @@ impl Point {
     }
 
     fn stopped(self, iterations: usize, termination: Termination) -> Fit {
-        Fit { values: self.values, residuals: self.residuals, jacobian: self.jacobian, iterations, termination }
+        let Point { values, residuals, jacobian, held, .. } = self;
+        Fit { values, residuals, jacobian, held, iterations, termination }
     }
 }
 

@@ -40,8 +40,10 @@ pub struct Fit {
     pub values: Vec<f64>,
     /// r at the parameters.
     pub residuals: DVector<f64>,
-    /// ∂r/∂p at the parameters.
+    /// ∂r/∂p at the parameters. Both have a row for each prior, behind the others.
     pub jacobian: DMatrix<f64>,
+    /// Parameters that ended at a bound beyond which the sum of squares falls.
+    pub held: Vec<bool>,
     /// Steps tried.
     pub iterations: usize,
     /// Why it stopped.
@@ -60,9 +62,18 @@ impl Fit {
     }
 
     /// Covariance of the parameters, (JᵀJ)⁻¹, for independent residuals of unit variance; `None` where the data leaves
-    /// a combination of parameters open.
+    /// a combination of parameters open. Those that are held at a bound have none; that of the others holds with these at their bounds.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
-        covariance::inverse_information(&self.jacobian)
+        let free: Vec<usize> = (0..self.values.len()).filter(|k| !self.held[*k]).collect();
+        if free.len() == self.values.len() {
+            return covariance::inverse_information(&self.jacobian);
+        }
+        let own = covariance::inverse_information(&self.jacobian.select_columns(&free))?;
+        let mut all = DMatrix::zeros(self.values.len(), self.values.len());
+        for (i, row) in free.iter().enumerate() {
+            free.iter().enumerate().for_each(|(j, column)| all[(*row, *column)] = own[(i, j)]);
+        }
+        Some(all)
     }
 
     /// s² = Σ r²/(N - p), the variance of the residuals; `None` without spare residuals.

@@ -1,5 +1,6 @@
 //! What is to be minimised, and when to stop.
 
+use super::known::Known;
 use nalgebra::{DMatrix, DVector};
 
 /// Residuals to be minimised.
@@ -13,6 +14,11 @@ pub trait Problem {
     /// Residuals and Jacobian together, for problems that compute both at once more cheaply.
     fn both(&self, parameters: &[f64]) -> (DVector<f64>, DMatrix<f64>) {
         (self.residuals(parameters), self.jacobian(parameters))
+    }
+
+    /// What is known of the parameters besides the residuals; nothing of those beyond the end of the list.
+    fn known(&self) -> Vec<Known> {
+        Vec::new()
     }
 }
 

@@ -203,3 +203,92 @@ fn groups_that_alone_show_a_parameter_leave_the_jackknife_without_an_answer() {
     assert_eq!(jackknife_covariance(&jacobian, &residuals, &[0..1, 1..2, 2..3]), None);
     assert_eq!(jackknife_covariance(&jacobian, &residuals, &[]), None);
 }
+
+/// A line with bounds and an earlier measurement.
+struct Informed {
+    line: Line,
+    known: Vec<Known>,
+}
+
+impl Problem for Informed {
+    fn residuals(&self, p: &[f64]) -> DVector<f64> {
+        self.line.residuals(p)
+    }
+
+    fn jacobian(&self, p: &[f64]) -> DMatrix<f64> {
+        self.line.jacobian(p)
+    }
+
+    fn known(&self) -> Vec<Known> {
+        self.known.clone()
+    }
+}
+
+fn line() -> Line {
+    Line { x: vec![0.0, 1.0, 2.0, 4.0], y: vec![1.1, 2.9, 5.2, 9.0], sd: vec![0.1, 0.2, 0.1, 0.4] }
+}
+
+/// Oracle: the mean of Gaussian measurements weighted by their information.
+#[test]
+fn an_earlier_measurement_counts_by_its_information() {
+    let free = least_squares(&line(), &[0.0, 0.0], &Options::default());
+    let prior = Prior { mean: 2.3, sd: 0.05 };
+    let known = vec![Known::default(), Known { prior: Some(prior), ..Known::default() }];
+    let fit = least_squares(&Informed { line: line(), known }, &[0.0, 0.0], &Options::default());
+    let mut information = free.covariance().unwrap().try_inverse().unwrap();
+    let mut right = &information * DVector::from_column_slice(&free.values);
+    information[(1, 1)] += 1.0 / (prior.sd * prior.sd);
+    right[1] += prior.mean / (prior.sd * prior.sd);
+    let covariance = information.try_inverse().unwrap();
+    let expected = &covariance * right;
+    assert!((DVector::from_column_slice(&fit.values) - expected).abs().max() < 1e-10, "{:?}", fit.values);
+    assert!((fit.covariance().unwrap() - covariance).abs().max() < 1e-12);
+}
+
+/// Oracle: the closed formula of a line whose slope is given.
+#[test]
+fn a_fit_ends_at_a_bound_that_it_would_exceed_and_nowhere_near_one_that_it_would_not() {
+    let free = least_squares(&line(), &[0.0, 0.0], &Options::default());
+    for (low, high, held) in [(-1e3, 1.8, true), (2.4, 1e3, true), (1.0, 3.0, false)] {
+        let known = vec![Known::default(), Known { low, high, prior: None }];
+        for start in [[0.0, 0.0], [5.0, 2.0], [0.0, 9.0]] {
+            let fit = least_squares(&Informed { line: line(), known: known.clone() }, &start, &Options::default());
+            assert_eq!((fit.termination.converged(), &fit.held[..]), (true, &[false, held][..]), "{start:?}");
+            let slope = free.values[1].clamp(low, high);
+            let own = line();
+            let weights = own.sd.iter().map(|sd| 1.0 / (sd * sd));
+            let terms = weights.clone().zip(own.y.iter().zip(&own.x)).map(|(w, (y, x))| w * (y - slope * x));
+            let expected = [terms.sum::<f64>() / weights.clone().sum::<f64>(), slope];
+            assert!((0..2).all(|k| (fit.values[k] - expected[k]).abs() < 1e-9), "{:?} {expected:?}", fit.values);
+            let covariance = fit.covariance().unwrap();
+            if held {
+                assert_eq!((covariance[(0, 1)], covariance[(1, 1)]), (0.0, 0.0));
+                assert!((covariance[(0, 0)] - 1.0 / weights.sum::<f64>()).abs() < 1e-12);
+            } else {
+                assert!((covariance - free.covariance().unwrap()).abs().max() < 1e-12);
+            }
+        }
+    }
+}
+
+/// The minimum of the valley within x ≤ 0.5 is at its edge, 0.25 high; steps along the valley end at the edge many times.
+#[test]
+fn a_curved_valley_is_walked_to_the_edge_of_the_allowed_range() {
+    struct Within;
+    impl Problem for Within {
+        fn residuals(&self, p: &[f64]) -> DVector<f64> {
+            Valley.residuals(p)
+        }
+        fn jacobian(&self, p: &[f64]) -> DMatrix<f64> {
+            Valley.jacobian(p)
+        }
+        fn known(&self) -> Vec<Known> {
+            vec![Known { high: 0.5, ..Known::default() }]
+        }
+    }
+    for frugal in [false, true] {
+        let fit = least_squares(&Within, &[-1.2, 1.0], &Options { frugal, ..Options::default() });
+        assert!(fit.termination.converged() && fit.held[0] && !fit.held[1], "{:?}", fit.termination);
+        assert!((fit.values[0] - 0.5).abs() < 1e-12 && (fit.values[1] - 0.25).abs() < 1e-9, "{:?}", fit.values);
+    }
+}

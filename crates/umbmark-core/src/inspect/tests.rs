@@ -331,7 +331,10 @@ fn what_tracks_determine_depends_on_the_motion_that_was_driven_and_not_on_the_pa
     assert!(bends.yes && !turns.yes && scale.yes, "{:?}", &found.determined[..3]);
     assert!(turns.std_error.is_none_or(|error| error > 0.5 * turns.usual.unwrap()), "{turns:?}");
     assert!(turns.because.contains("does not show it") && found.rank == 2, "{turns:?}");
+    let blind = |inspection: &Inspection| check(inspection, "wheels").found.contains(SIDES);
+    assert!(blind(&found), "{}", check(&found, "wheels").found);
     let square = dataset(vec![drive(Direction::Ccw, 5, same)]).inspect();
+    assert!(!blind(&square));
     assert!(square.determined[..3].iter().all(|d| d.yes && d.std_error.unwrap() < 2e-3), "{:?}", square.determined);
     assert_eq!(square.rank, 3);
 }

@@ -3,14 +3,13 @@
 use super::misfits::elsewhere;
 use super::story::{Crossed, Error, Learnt, MOST_EFFECTS, Step};
 use crate::dataset::Levels;
-use crate::diagnose::ends::{self, Moments};
+use crate::diagnose::ends;
 use crate::diagnose::{Diagnosis, Options, Reason, Suspect, Verdict};
 use crate::drive::Robot;
 use crate::effect::{Model, Part};
 use crate::evidence::ends::{End, Fitted};
 use crate::evidence::{Ends, Evidence, Fit, FitError};
 use crate::watch::Watch;
-use nalgebra::DVector;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -292,27 +291,7 @@ fn squares(ends: &Ends, model: &Model, of: impl Fn(usize) -> bool) -> Squares {
     runs.map(of_run).fold(Squares::default(), Squares::add)
 }
 
-/// AICc and BIC, if there are enough runs. From the normal likelihood of N runs with one unknown covariance: N ln |Σ̂| and 2k or k ln N for
-/// k parameters.
+/// AICc and BIC of a model that is fitted to the return poses, if there are enough runs.
 pub(crate) fn criteria(ends: &Ends, model: &Model) -> Option<[f64; 2]> {
-    let d = ends.coordinates();
-    let fitted = Fitted::new(ends, model).ok()?;
-    let of_run = |r: &nalgebra::Vector3<f64>| DVector::from_column_slice(&r.as_slice()[..d]);
-    let runs: Vec<_> =
-        ends.runs.iter().zip(&fitted.residuals).map(|(run, r)| (run.direction as usize, of_run(r))).collect();
-    let moments = Moments::of(&runs);
-    let n = runs.len() as f64;
-    let mut covariance = moments.scatter.clone();
-    for group in 0..2 {
-        covariance.ger(moments.count(group), &moments.means[group], &moments.means[group], 1.0);
-    }
-    let determinant = (covariance / n).cholesky()?.determinant();
-    let (values, parameters) = (n * d as f64, (fitted.free.len() + d * (d + 1) / 2) as f64);
-    let spare = values - parameters - 1.0;
-    if !(determinant > 0.0) || spare <= 0.0 {
-        return None;
-    }
-    let deviance = n * libm::log(determinant);
-    let aicc = deviance + 2.0 * parameters * values / spare;
-    Some([aicc, deviance + parameters * libm::log(n)])
+    Fitted::new(ends, model).ok()?.criteria(ends)
 }

@@ -5,6 +5,7 @@ use crate::diagnose::{Diagnosis, Reason, Repeated, Verdict};
 use crate::effect::Model;
 use crate::evidence::Evidence;
 use crate::likelihood::Noise;
+use crate::setup::SIDES;
 use crate::watch::{Reached, Watch};
 
 /// Maximum number of effects of a learnt model.
@@ -111,7 +112,9 @@ impl Learnt {
         let others: Vec<&str> = all.iter().filter(|(word, _)| !named(word)).map(|(_, others)| *others).collect();
         let (last, first) = others.split_last()?;
         let others = if first.is_empty() { (*last).to_owned() } else { format!("{} and {last}", first.join(", ")) };
-        (!self.diagnosis.fitted.is_empty()).then(|| format!("other {others} than those of these runs"))
+        let straight = self.diagnosis.setup.mounting.is_some_and(|mounting| !mounting.turns);
+        let sides = if straight { format!("; {SIDES}") } else { String::new() };
+        (!self.diagnosis.fitted.is_empty()).then(|| format!("other {others} than those of these runs{sides}"))
     }
 
     /// If columns contradict their names, nothing is learnt about the robot.

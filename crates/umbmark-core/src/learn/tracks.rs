@@ -8,7 +8,7 @@ use crate::diagnose::{Diagnosis, Options, Reason, Verdict};
 use crate::effect::{Model, Part, find};
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit, fit_alone, is_possible, told};
 use crate::evidence::{Estimate, Evidence, Fit, FitError};
-use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE, stands_for_the_reference};
+use crate::likelihood::{Fitted, NUISANCE, Noise, Observed, USUAL_NOISE, stands_for_the_reference};
 use crate::watch::{Reached, Watch};
 
 /// The runs do not determine a first effect if its standard error exceeds this multiple of its usual size ...
@@ -176,6 +176,31 @@ fn is_shown(fitted: &Fitted, effect: &str) -> bool {
     is_possible(fitted, effect) && (own.standard_error < OPEN * parameter.typical || off > SURE * own.standard_error)
 }
 
+/// What is said of a model that the tests of `compare` reject only because it lacks effects of the reference that were fitted along with it:
+/// these are part of the fit, and too small to be added.
+fn explained_by_mounting(written: &Fitted, options: &Options) -> Result<Option<String>, FitError> {
+    let mut with = fixed(&written.model);
+    let lacks = |name: &&str| written.model.parts().iter().all(|part| part.effect.name() != *name);
+    for name in NUISANCE.into_iter().filter(lacks) {
+        with.add(name)?.free = true;
+    }
+    if !with.is_free() {
+        return Ok(None);
+    }
+    let fitted = written.observed.fit(&with, &written.noise, &[])?;
+    let is_explained = against_as_written(&fitted.observed, &fitted.model, options).is_none();
+    let is_shown = |own: &Estimate| own.interval(1.0 - options.size).is_some_and(|interval| !interval.contains(0.0));
+    let found = estimates(&fitted).into_iter().filter(is_shown);
+    let sizes: Vec<String> =
+        found.map(|own| format!("{} of {} of {:.2e}", own.parameter, own.effect, own.value)).collect();
+    Ok((is_explained && !sizes.is_empty()).then(|| {
+        format!(
+            "As written, the model leaves an error that depends on the motion: by {}, fitted along with it and too small to be added.",
+            sizes.join(" and ")
+        )
+    }))
+}
+
 /// The final diagnosis, of the learnt model.
 fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Learnt, FitError> {
     let told = Conclusion::new(&mut search, options)?;
@@ -217,7 +242,10 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         reasons.extend(tracks::of_usual_noise(&written.observed, &written.noise));
     }
     reasons.splice(..0, search.stopped.then_some(Reason::Stopped));
-    reasons.extend(against_as_written(&written.observed, &written.model, options));
+    let against = against_as_written(&written.observed, &written.model, options);
+    let mounted = if against.is_some() { explained_by_mounting(&written, options)? } else { None };
+    hints.extend(mounted.clone());
+    reasons.extend(against.filter(|_| mounted.is_none()));
     let (noise, conditions) = (written.observed.setup.noise.position, crossed(&written));
     reasons.extend(misfits(&steps, runs, noise, is_nominal(&last.fitted)));
     reasons.extend(elsewhere(&steps, &conditions, runs, noise));
@@ -315,7 +343,7 @@ fn fixed(model: &Model) -> Model {
 pub(super) fn fit_whole(observed: &Observed, model: &Model) -> Result<(Fit, Step), FitError> {
     let alone = fit_alone(observed, model)?;
     let step = step_of(&alone, None);
-    Ok((told(alone.into_fitted()), step))
+    Ok((told(alone), step))
 }
 
 /// A model fitted under noise of the usual size: enough for its errors.

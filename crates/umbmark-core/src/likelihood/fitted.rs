@@ -4,6 +4,7 @@ use super::beginning::Taken;
 use super::noise::Noise;
 use super::observed::{Column, Observed};
 use crate::effect::Model;
+use crate::fit::Termination;
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
@@ -43,7 +44,27 @@ pub struct Fitted {
     pub taken: Vec<Taken>,
     /// Where runs were disturbed; these places are left out of the fit.
     pub outliers: Vec<Outlier>,
+    /// Places of free values that ended at a bound.
+    pub held: Vec<usize>,
+    /// How the last fit of the values ended.
+    pub ended: Ended,
     pub(crate) slopes: Slopes,
+}
+
+/// How a fit ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ended {
+    /// Why.
+    pub termination: Termination,
+    /// Steps tried.
+    pub steps: usize,
+}
+
+impl Default for Ended {
+    /// Where there is nothing to fit.
+    fn default() -> Self {
+        Ended { termination: Termination::SmallStep, steps: 0 }
+    }
 }
 
 /// Derivatives of the predicted poses by free values of a model, run by run and one column a value: computed once for each model.

@@ -1,11 +1,11 @@
 //! The free parameters of a model, fitted to whole tracks.
 
-use super::fitted::{Fitted, Slopes};
+use super::fitted::{Ended, Fitted, Slopes};
 use super::noise::Noise;
 use super::observed::{Column, Observed, ObservedRun};
 use super::products::{ABSORBED, gram, share_left};
 use crate::effect::{Derived, Model, ModelError, Number, find};
-use crate::fit::{Options, Problem, least_squares};
+use crate::fit::{Known, Options, Problem, least_squares};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::cell::RefCell;
@@ -68,6 +68,8 @@ impl Observed {
             usual_noise: false,
             taken: Vec::new(),
             outliers: self.jumps(),
+            held: Vec::new(),
+            ended: Ended::default(),
             slopes,
         }
     }
@@ -155,6 +157,14 @@ impl Fitted {
         self.model.values().nth(place).zip(self.model.nothing(place)).map_or(0.0, |(value, nothing)| value - nothing)
     }
 
+    /// Earlier measurements of free values: which of these, how far it is above the value, and its standard deviation.
+    pub fn priors(&self) -> Vec<(usize, f64, f64)> {
+        let values: Vec<f64> = self.model.values().collect();
+        let known = self.observed.knowledge.of(&self.model, &self.free);
+        let of = |(k, known): (usize, Known)| known.prior.map(|p| (k, p.mean - values[self.free[k]], p.sd));
+        known.into_iter().enumerate().filter_map(of).collect()
+    }
+
     /// Takes as start values those that fit the runs in short pieces, if the whole runs are nearer to them.
     ///
     /// Without headings, a wheelbase that is a few per cent off turns a long way by a right angle and more against the measured one, and a fit
@@ -223,6 +233,8 @@ impl Fitted {
         let fit = least_squares(&tracks, &start, options);
         let last = tracks.last.into_inner();
         let own = self.free.len();
+        self.held = (0..own).filter(|k| fit.held[*k]).map(|k| self.free[k]).collect();
+        self.ended = Ended { termination: fit.termination, steps: fit.iterations };
         self.model = self.model.with_values(&self.free, &fit.values[..own])?;
         let covariance = fit.covariance().map(|all| all.view((0, 0), (own, own)).into_owned());
         self.covariance = covariance.map(|covariance| within_usual_sizes(covariance, &self.model, &self.free));
@@ -405,6 +417,10 @@ impl Problem for Tracks<'_> {
         let both = self.whitened((observed, &at.slopes, &at.reference), residuals, sizes);
         self.last.replace(Some(at));
         both
+    }
+
+    fn known(&self) -> Vec<Known> {
+        self.fitted.observed.knowledge.of(&self.fitted.model, &self.fitted.free)
     }
 }
 

@@ -12,6 +12,7 @@ mod steps;
 mod uneven;
 mod walk;
 
+use super::knowledge::Knowledge;
 use crate::dataset::{Dataset, Levels};
 use crate::drive::Robot;
 use crate::effect::{Chain, Model, RunContext, TestKind};
@@ -157,6 +158,8 @@ pub struct Observed {
     pub setup: Arc<Setup>,
     /// The conditions of the runs, by the names of their logs.
     pub conditions: Arc<[Levels]>,
+    /// What is known of the numbers of a model besides the runs.
+    pub knowledge: Arc<Knowledge>,
 }
 
 impl Observed {
@@ -186,7 +189,8 @@ impl Observed {
         }
         let runs = pieces::cut(runs, robot);
         let conditions = Levels::of(data).into();
-        Ok(Observed { robot: robot.clone(), runs, path: data.path.clone(), setup: Arc::new(setup), conditions })
+        let (robot, path, setup) = (robot.clone(), data.path.clone(), Arc::new(setup));
+        Ok(Observed { robot, runs, path, setup, conditions, knowledge: Arc::default() })
     }
 
     /// Believed travel of the runs.
@@ -227,6 +231,11 @@ impl Observed {
     /// Whether a heading was measured anywhere.
     pub(crate) fn has_headings(&self) -> bool {
         self.runs.iter().any(|run| run.blocks.iter().any(|block| block.headings > 0))
+    }
+
+    /// Whether the runs turn: where they do not, rotations and turn rates are single counts.
+    pub(crate) fn turns(&self) -> bool {
+        self.setup.mounting.is_none_or(|mounting| mounting.turns)
     }
 
     /// The same runs in pieces of about so many seconds, each with its own START.

@@ -60,6 +60,57 @@ impl From<&likelihood::Outlier> for Outlier {
     }
 }
 
+/// How a fit ended.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Ended {
+    /// Whether at a minimum.
+    pub converged: bool,
+    /// How.
+    pub how: &'static str,
+    /// Steps tried.
+    pub steps: usize,
+}
+
+/// What was known of a number before a fit, and what became of it.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct KnownBefore {
+    /// The effect that has it.
+    pub effect: String,
+    /// Its name.
+    pub parameter: String,
+    /// Its least value; null without one.
+    pub low: Option<f64>,
+    /// Its greatest value; null without one.
+    pub high: Option<f64>,
+    /// Its value by an earlier measurement; null without one.
+    pub mean: Option<f64>,
+    /// Standard deviation of that measurement.
+    pub sd: Option<f64>,
+    /// Its value by the fit.
+    pub value: f64,
+    /// Whether it is held at a bound beyond which the fit would be better; it has no interval then.
+    pub held: bool,
+    /// How far the runs alone are from the earlier measurement, in standard deviations of the difference.
+    pub contradiction: Option<f64>,
+}
+
+impl From<evidence::KnownBefore<'_>> for KnownBefore {
+    fn from(k: evidence::KnownBefore<'_>) -> Self {
+        let likelihood::KnownNumber { effect, parameter, known } = k.number;
+        KnownBefore {
+            effect: effect.clone(),
+            parameter: parameter.clone(),
+            low: finite(known.low),
+            high: finite(known.high),
+            mean: known.prior.map(|prior| prior.mean),
+            sd: known.prior.map(|prior| prior.sd),
+            value: k.value,
+            held: k.held,
+            contradiction: k.contradiction,
+        }
+    }
+}
+
 /// A fit of a model: its numbers, and the model with them.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Fitted {
@@ -80,6 +131,22 @@ pub struct Fitted {
     pub setup: Setup,
     /// Effects of the reference whose values were estimated from the motion.
     pub taken: Vec<Taken>,
+    /// How the fit ended.
+    pub ended: Ended,
+    /// Root mean square distance of observed from predicted positions, in m.
+    pub rmse_m: Option<f64>,
+    /// The same of headings, in rad; null where none were measured.
+    pub heading_rmse_rad: Option<f64>,
+    /// Sum of the squared residuals in units of their standard deviations, those of earlier measurements included; from tracks only.
+    pub chi2: Option<f64>,
+    /// Number of these residuals, those of the runs; from tracks only.
+    pub residual_count: Option<usize>,
+    /// Akaike's information criterion, corrected for few runs; null where these are too few.
+    pub aicc: Option<f64>,
+    /// Schwarz's information criterion; null where the runs are too few.
+    pub bic: Option<f64>,
+    /// Bounds and earlier measurements of numbers.
+    pub known: Vec<KnownBefore>,
     /// The model with the fitted values.
     pub model: Model,
     /// Probability with which the intervals hold.
@@ -94,12 +161,24 @@ impl Fitted {
         Fitted {
             fitted: estimates(&fit.estimates, level),
             correlations: fit.correlations.clone(),
-            not_shown: not_shown(&fit.model, &fit.estimates),
+            not_shown: not_shown(fit),
             meaning: meaning(&fit.estimates, &fit.model),
             outliers: fit.outliers.iter().map(Outlier::from).collect(),
             usual_noise: fit.usual_noise,
             setup: fit.setup.as_ref().into(),
             taken: taken(&fit.taken),
+            ended: Ended {
+                converged: fit.ended.termination.converged(),
+                how: fit.ended.termination.name(),
+                steps: fit.ended.steps,
+            },
+            rmse_m: finite(fit.leaves.position),
+            heading_rmse_rad: fit.leaves.heading,
+            chi2: fit.leaves.chi2,
+            residual_count: fit.leaves.residuals,
+            aicc: fit.leaves.aicc,
+            bic: fit.leaves.bic,
+            known: fit.known().map(KnownBefore::from).collect(),
             model: Model::with_noise(&fit.model, fit.noise.as_ref()),
             level,
             version: crate::VERSION,
@@ -129,10 +208,11 @@ pub fn meaning(estimates: &[evidence::Estimate], model: &effect::Model) -> Keyed
 }
 
 /// The free effects that were not fitted, because this data cannot separate them from the rest of the model.
-pub fn not_shown(model: &effect::Model, fitted: &[evidence::Estimate]) -> Vec<&'static str> {
+pub fn not_shown(fit: &evidence::Fit) -> Vec<&'static str> {
     let is_free = |part: &&effect::Part| part.free && part.fixed.len() < part.values.len();
-    let free = model.parts().iter().filter(is_free).map(|part| part.effect.name());
-    free.filter(|name| fitted.iter().all(|e| e.effect != *name)).collect()
+    let free = fit.model.parts().iter().filter(is_free).map(|part| part.effect.name());
+    let is_held = |name: &str| fit.known().any(|known| known.held && known.number.effect == name);
+    free.filter(|name| fit.estimates.iter().all(|e| e.effect != *name) && !is_held(name)).collect()
 }
 
 #[cfg(test)]

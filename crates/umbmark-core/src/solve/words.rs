@@ -82,7 +82,9 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
     let explained = verdict == Verdict::Explained;
     // Runs begin anew behind the jumps that the setup found, and not behind those that only the fit shows.
     let jumps = if off.measure == Measure::Along { only_fitted(solution) } else { 0 };
-    let is_chance = |error: f64| off.chance.map_or(explained && jumps == 0, |chance| error <= chance);
+    let remains = solution.learnt.diagnosis.remains.as_ref();
+    let drifts = remains.is_some_and(|remains| remains.excess().is_some());
+    let is_chance = |error: f64| off.chance.map_or(explained && jumps == 0 && !drifts, |chance| error <= chance);
     let by_chance = |error: f64| match off.chance {
         _ if is_chance(error) => ", no more than chance makes".to_owned(),
         Some(chance) => format!(", and chance stays below {} in 95 % of tests", mm(chance)),

@@ -119,6 +119,21 @@ def by_name(name: str, value: Any, wanted: str) -> list[tuple[str, Any]]:
     return [*value.items()]
 
 
+def pairs(name: str, value: Any, first: str, second: str) -> list[tuple[str, tuple[float, float]]]:
+    """Give a mapping of names to two numbers as a list; None is an open end, on either side."""
+    given = by_name(name, {} if value is None else value, f"({first}, {second})")
+    return [(key, _pair(f'{name}["{key}"]', pair, first, second)) for key, pair in given]
+
+
+def _pair(name: str, value: Any, first: str, second: str) -> tuple[float, float]:
+    try:
+        low, high = value
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} must be ({first}, {second}), got {value!r}") from None
+    ends = (-np.inf if low is None else low, np.inf if high is None else high)
+    return real(f"{name}[0]", ends[0]), real(f"{name}[1]", ends[1])
+
+
 def column(name: str, value: Numbers) -> NDArray[np.float64]:
     """Give numbers of any real type, sequence or frame as an array of shape (n,)."""
     array = _array(name, value, "numbers of shape (n,)")

@@ -161,7 +161,7 @@ def calibrate(
     return Calibration._of(document, robot=data.robot, path=data.path, text=text)
 
 
-class GearCalibration(_documents.GearCalibration, frozen=True):
+class GearCalibration(_documents.GearCalibration, Printed, frozen=True):
     """A robot of any drive, calibrated by the first effects of its drive.
 
     Attributes
@@ -170,12 +170,15 @@ class GearCalibration(_documents.GearCalibration, frozen=True):
         The nominal robot with the fitted effects.
     robot : Robot
         The robot with its odometry corrected.
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
     """
 
     _of_row: ClassVar[tuple[str, ...]] = ("value", "standard_error", "interval")
 
     model: Model
     robot: Robot
+    text: str
 
     def table(self) -> list[Row]:
         """Give the fitted sizes, one dict a row."""
@@ -188,7 +191,9 @@ class GearCalibration(_documents.GearCalibration, frozen=True):
         return _plots.fitted(self, ax)
 
 
-def calibrate_gears(data: Data, *, level: float = 0.95) -> GearCalibration:
+def calibrate_gears(
+    data: Data, *, level: float = 0.95, learn: bool = True, threads: int = 0
+) -> GearCalibration:
     """Calibrate a robot of any drive by the first effects of its drive.
 
     Parameters
@@ -197,6 +202,10 @@ def calibrate_gears(data: Data, *, level: float = 0.95) -> GearCalibration:
         The measurements.
     level : float, default 0.95
         Probability with which the intervals hold.
+    learn : bool, default True
+        Whether to learn a model too, and to say in ``text`` what of it is to be written.
+    threads : int, default 0
+        Threads to use; 0 for all processors. No number depends on it.
 
     Returns
     -------
@@ -222,5 +231,6 @@ def calibrate_gears(data: Data, *, level: float = 0.95) -> GearCalibration:
     >>> umbmark.calibrate_gears(data).drive
     'synchro'
     """
-    document, model, robot = _calibrate_gears(data_of(data), real("level", level))
-    return GearCalibration._of(document, model=model, robot=robot)
+    found = _calibrate_gears(data_of(data), real("level", level), learn, threads)
+    document, text, model, robot = found
+    return GearCalibration._of(document, model=model, robot=robot, text=text)

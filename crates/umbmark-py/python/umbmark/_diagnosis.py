@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import msgspec
 
 from umbmark import _documents, _umbmark
-from umbmark._arguments import Seed, names, options_of, real
+from umbmark._arguments import Seed, names, options_of, pairs, real
 from umbmark._explained import Explained
 from umbmark._progress import Bar, Progress
 from umbmark._result import Row
@@ -145,6 +145,8 @@ def fit(
     *,
     add: str | Sequence[str] = (),
     fix: str | Sequence[str] | Mapping[str, float] = (),
+    bounds: Mapping[str, tuple[float | None, float | None]] | None = None,
+    priors: Mapping[str, tuple[float, float]] | None = None,
     level: float = 0.95,
 ) -> Fitted:
     """Fit the free effects of a model to measured runs.
@@ -161,6 +163,12 @@ def fit(
     fix : str, sequence of str, or mapping of str to float
         Parameters of free effects that are not fitted, "floor_slope.drift_y", at the values of the
         model or at those given. The model that is returned keeps them fixed.
+    bounds : mapping of str to (low, high), optional
+        Limits of parameters that the fit does not exceed, of which one may be None. A parameter
+        that ends at a bound has no interval; ``known`` of the result says so.
+    priors : mapping of str to (mean, sd), optional
+        Earlier measurements of parameters with their standard deviations: each counts as one more
+        measurement beside the runs. ``known`` says how far the runs alone are from them.
     level : float, default 0.95
         Probability with which the intervals hold.
 
@@ -177,6 +185,9 @@ def fit(
     >>> fitted = umbmark.fit(data, fix={"wheel_diameter_ratio.e_d": 1.0})
     >>> [estimate.parameter for estimate in fitted.fitted]
     ['e_b']
+    >>> fitted = umbmark.fit(data, priors={"wheelbase.e_b": (1.0, 0.005)})
+    >>> fitted.known[0].effect, fitted.ended.converged
+    ('wheelbase', True)
     """
     data = data_of(data)
     held = (
@@ -184,8 +195,9 @@ def fit(
         if isinstance(fix, Mapping)
         else [(name, None) for name in names("fix", fix)]
     )
+    knowledge = pairs("bounds", bounds, "low", "high"), pairs("priors", priors, "mean", "sd")
     document, text, fitted = _umbmark.fit(
-        data, model_of(model), names("add", add), held, real("level", level)
+        data, model_of(model), names("add", add), held, knowledge, real("level", level)
     )
     return Fitted._of(document, model=fitted, data=data, text=text)
 

@@ -1626,6 +1626,23 @@ class Fitted(Result, frozen=True):
         wrong poses, outlying runs.
     taken : tuple[Taken, ...]
         Effects of the reference whose values were estimated from the motion.
+    ended : Ended
+        How the fit ended.
+    rmse_m : float or None
+        Root mean square distance of observed from predicted positions, in m.
+    heading_rmse_rad : float or None
+        The same of headings, in rad; None where none were measured.
+    chi2 : float or None
+        Sum of the squared residuals in units of their standard deviations, those of earlier
+        measurements included; from tracks only.
+    residual_count : int or None
+        Number of these residuals, those of the runs; from tracks only.
+    aicc : float or None
+        Akaike's information criterion, corrected for few runs; None where these are too few.
+    bic : float or None
+        Schwarz's information criterion; None where the runs are too few.
+    known : tuple[KnownBefore, ...]
+        Bounds and earlier measurements of numbers.
     model : Model
         The model with the fitted values.
     level : float
@@ -1642,9 +1659,72 @@ class Fitted(Result, frozen=True):
     usual_noise: bool
     setup: Setup
     taken: tuple[Taken, ...]
+    ended: Ended
+    rmse_m: float | None
+    heading_rmse_rad: float | None
+    chi2: float | None
+    residual_count: int | None
+    aicc: float | None
+    bic: float | None
+    known: tuple[KnownBefore, ...]
     model: Model
     level: float
     version: str
+
+
+class Ended(Record, frozen=True):
+    """How a fit ended.
+
+    Attributes
+    ----------
+    converged : bool
+        Whether at a minimum.
+    how : str
+        How.
+    steps : int
+        Steps tried.
+    """
+
+    converged: bool
+    how: str
+    steps: int
+
+
+class KnownBefore(Record, frozen=True):
+    """What was known of a number before a fit, and what became of it.
+
+    Attributes
+    ----------
+    effect : str
+        The effect that has it.
+    parameter : str
+        Its name.
+    low : float or None
+        Its least value; None without one.
+    high : float or None
+        Its greatest value; None without one.
+    mean : float or None
+        Its value by an earlier measurement; None without one.
+    sd : float or None
+        Standard deviation of that measurement.
+    value : float
+        Its value by the fit.
+    held : bool
+        Whether it is held at a bound beyond which the fit would be better; it has no interval then.
+    contradiction : float or None
+        How far the runs alone are from the earlier measurement, in standard deviations of the
+        difference.
+    """
+
+    effect: str
+    parameter: str
+    low: float | None
+    high: float | None
+    mean: float | None
+    sd: float | None
+    value: float
+    held: bool
+    contradiction: float | None
 
 
 class GearCalibration(Result, frozen=True):

@@ -58,8 +58,8 @@ class Explained(Printed):
 
         The free parameters in the units of the catalogue, with intervals that hold as the result
         says. On tracks the root mean square of the residuals in mm and deg, and chi2 of the
-        whitened ones, which is about their number if the model is right. AICc and BIC of the last
-        step of learning.
+        whitened ones, which is about their number if the model is right. AICc and BIC of a fit, or
+        of the last step of learning; how a fit ended, and what was known before.
         """
         from umbmark._fit_report import report
 
@@ -69,7 +69,7 @@ class Explained(Printed):
             # Return poses alone.
             of = None
         steps = getattr(self, "steps", ())
-        return report(self.fitted, len(self.data), of, steps[-1] if steps else None)
+        return report(self.fitted, len(self.data), of, steps[-1] if steps else self)
 
     @overload
     def plot(self, ax: Axes | None = None, *, kind: None = None) -> Axes: ...

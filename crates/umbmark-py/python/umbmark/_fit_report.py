@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from umbmark._documents import Estimate, Step
+from umbmark._documents import Estimate, Fitted, KnownBefore
 from umbmark._umbmark import effects
 
 if TYPE_CHECKING:
@@ -15,18 +15,31 @@ if TYPE_CHECKING:
 HEADER = ("parameter", "value", "standard error", "interval", "unit")
 
 
-def report(
-    fitted: tuple[Estimate, ...], runs: int, tracks: Tracks | None, step: Step | None
-) -> str:
-    """Write down a fit: its free parameters, its residuals on tracks, and what a step tells."""
+def report(fitted: tuple[Estimate, ...], runs: int, tracks: Tracks | None, of: Any) -> str:
+    """Write down a fit: its free parameters, its residuals on tracks, and its criteria."""
     parameters = "1 parameter" if len(fitted) == 1 else f"{len(fitted)} parameters"
     rows = [HEADER, *(_row(estimate) for estimate in fitted)]
     lines = [f"{parameters}, {runs} runs", "", *_aligned(rows), "", *_residuals(tracks)]
-    if step is not None and step.aicc is not None:
-        lines.append(f"AICc             {step.aicc:.2f}")
-    if step is not None and step.bic is not None:
-        lines.append(f"BIC              {step.bic:.2f}")
+    for name, value in (("AICc", getattr(of, "aicc", None)), ("BIC", getattr(of, "bic", None))):
+        if value is not None:
+            lines.append(f"{name:<17}{value:.2f}")
+    if isinstance(of, Fitted):
+        lines.append(f"{'fit':<17}{of.ended.how}, step {of.ended.steps}")
+        lines.extend(_known(known) for known in of.known)
     return "\n".join(lines)
+
+
+def _known(known: KnownBefore) -> str:
+    """Say what was known of a number, and what became of it."""
+    said = f"{'known before':<17}{known.effect}.{known.parameter}"
+    if known.low is not None or known.high is not None:
+        ends = ("" if end is None else f"{end:g}" for end in (known.low, known.high))
+        said += f", bounds {':'.join(ends)}{' (held there)' if known.held else ''}"
+    if known.mean is not None:
+        said += f", prior {known.mean:g} ± {known.sd:g}"
+    if known.contradiction is not None:
+        said += f", the runs are {known.contradiction:+.1f} standard deviations from it"
+    return said
 
 
 def _row(estimate: Estimate) -> tuple[str, ...]:

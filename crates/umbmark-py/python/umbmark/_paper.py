@@ -10,7 +10,7 @@ from msgspec import UNSET
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
 from umbmark._progress import Bar, Progress
-from umbmark._result import Row
+from umbmark._result import Printed, Row
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,10 +18,12 @@ if TYPE_CHECKING:
 Pose = tuple[float, float, float]
 
 
-class Paper(_documents.Paper, frozen=True):
+class Paper(_documents.Paper, Printed, frozen=True):
     """The paper's experiments; those that were not requested are left out."""
 
     _of_row: ClassVar[tuple[str, ...]] = ("value", "low", "high", "published")
+
+    text: str
 
     def table(self) -> list[Row]:
         """Give each number with what was published and where simulated tests lie, one a row."""
@@ -131,4 +133,5 @@ def paper(
     ['-0.00 m, 0.00 m', '-0.70 m, -1.02 m']
     """
     with Bar(progress, 1000, "steps") as bar:
-        return Paper._of(_umbmark.paper([*experiments], n, seed, threads, bar.at))
+        document, text = _umbmark.paper([*experiments], n, seed, threads, bar.at)
+    return Paper._of(document, text=text)

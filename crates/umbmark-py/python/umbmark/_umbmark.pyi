@@ -930,8 +930,8 @@ def paper(
     seed: Seed,
     threads: int,
     progress: Callable[[int], object] | None,
-) -> str:
-    """Experiments of the paper, as one document; all of them where none is named."""
+) -> tuple[str, str]:
+    """Experiments of the paper, as one document and in words; all of them where none is named."""
 
 def kinds() -> dict[str, str]:
     """The kinds of figures, and what each shows."""
@@ -1119,9 +1119,11 @@ def separate(
 ) -> tuple[str, str]:
     """Experiments that tell two effects apart, together with the data or a planned test."""
 
-def calibrate_gears(data: Dataset, level: float) -> tuple[str, Model, Robot]:
-    """A calibration of any drive by its first effects: the document, the model, and the
-    corrected robot.
+def calibrate_gears(
+    data: Dataset, level: float, learn: bool, threads: int
+) -> tuple[str, str, Model, Robot]:
+    """A calibration of any drive by its first effects: the document, the text, the model, and
+    the corrected robot.
     """
 
 def calibrate(
@@ -1173,10 +1175,13 @@ def fit(
     model: Model | None,
     add: Sequence[str],
     fix: Sequence[tuple[str, float | None]],
+    knowledge: tuple[
+        Sequence[tuple[str, tuple[float, float]]], Sequence[tuple[str, tuple[float, float]]]
+    ],
     level: float,
 ) -> tuple[str, str, Model]:
-    """A model with its free effects fitted, those of `add` too, but for the parameters of `fix`,
-    at their values or others.
+    """A model with its free effects fitted, those of `add` too, but for the parameters of `fix`, at
+    their values or others; within bounds, and with earlier measurements.
     """
 
 def learn(

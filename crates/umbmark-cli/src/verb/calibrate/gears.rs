@@ -9,7 +9,7 @@ use umbmark_core::drive::Robot;
 use umbmark_core::effect::Model;
 use umbmark_core::learn::{GearCalibration, calibrate_gears};
 use umbmark_core::result;
-use umbmark_core::solve::solve;
+use umbmark_core::solve::{Solution, solve};
 
 use super::{Arguments, write_targets};
 use crate::Session;
@@ -51,15 +51,16 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
             &format!("{effect} is not determined: this data does not show it, or cannot separate it from the others"),
         );
     }
-    let text = text(&calibration, robot, arguments.intervals.level);
-    write!(session.out(), "{text}\n{}", answer_text(&answer, 1.0 - testing.size))?;
+    let text = told(robot, &calibration, Some(&answer), arguments.intervals.level, testing.size);
+    write!(session.out(), "{text}")?;
     for file in written {
         writeln!(session.out(), "wrote {file}")?;
     }
     super::told_what_is_withheld(arguments, withheld)
 }
 
-fn text(calibration: &GearCalibration, robot: &Robot, level: f64) -> String {
+/// The fitted sizes, what they change, and what `solve` answers to tests of this size, where it was asked.
+pub fn told(robot: &Robot, calibration: &GearCalibration, answer: Option<&Solution>, level: f64, size: f64) -> String {
     let mut text = format!("Calibration of {}, drive = \"{}\"\n\n", robot.name, robot.drive.kind().name());
     text += &estimates_table(&calibration.estimates, level);
     if let Some(i) = &calibration.identifiability {
@@ -76,5 +77,6 @@ fn text(calibration: &GearCalibration, robot: &Robot, level: f64) -> String {
         .changes(robot)
         .into_iter()
         .map(|(key, old, new)| vec![key.to_owned(), format!("{old}"), format!("{new:.9}")]);
-    text + &table(&["robot.toml", "nominal", "corrected"], rows) + "\n"
+    text += &(table(&["robot.toml", "nominal", "corrected"], rows) + "\n");
+    text + &answer.map_or_else(String::new, |answer| format!("\n{}", answer_text(answer, 1.0 - size)))
 }

@@ -47,7 +47,7 @@ pub fn what_repeats(
 ) -> Option<Repeated> {
     let chain = model.chain();
     let steps: Vec<Vec<TrackStep>> = observed.runs.par_iter().map(|run| steps(run, &chain)).collect();
-    let laws = Laws::of(&steps, &observed.robot);
+    let laws = Laws::of(&steps, &observed.robot, observed.turns());
     let runs = observed.runs.par_iter().zip(own).zip(&steps).enumerate();
     let sums = runs.flat_map_iter(|(index, ((run, own), steps))| of_run(index, run, own, &laws, steps, noise));
     let sums: Vec<Sums> = sums.collect();
@@ -86,6 +86,7 @@ pub(super) fn beside(exam: &Examination, seed: u64) -> Option<Repeated> {
 mod tests {
     use super::super::smooth::Motion;
     use super::super::tests::{complete, fitted, on_grain};
+    use super::steps::Per;
     use super::*;
     use crate::drive::Robot;
     use crate::effect::effects_text;
@@ -154,7 +155,7 @@ mod tests {
         let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
         let chain = model.chain();
         let steps: Vec<Vec<TrackStep>> = observed.runs.iter().map(|run| steps(run, &chain)).collect();
-        let laws = Laws::of(&steps, &observed.robot);
+        let laws = Laws::of(&steps, &observed.robot, observed.turns());
         for (words, per, motion, target, formula) in [
             ("a wave of 2 times the heading", "metre", 2, Target::HeadingPerMetre, "cos(2 * heading)"),
             ("the square of the speed", "metre", 1, Target::SidewaysPerMetre, "speed^2"),
@@ -197,6 +198,28 @@ mod tests {
         }
     }
 
+    #[test]
+    fn where_runs_do_not_turn_no_law_of_turns_is_asked_and_cosines_keep_their_sines() {
+        let model = Model::new(&Robot::labmate());
+        let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
+        let chain = model.chain();
+        let steps: Vec<Vec<TrackStep>> = observed.runs.iter().map(|run| steps(run, &chain)).collect();
+        let [all, straight] = [true, false].map(|turns| Laws::of(&steps, &observed.robot, turns));
+        let text = |laws: &Laws, term: usize| laws.functions[laws.terms[term].function].formula.0.clone();
+        let is_of_turns = |laws: &Laws, k: usize| {
+            matches!(laws.terms[k].per, Per::Radian | Per::Turned) || text(laws, k).contains("turn")
+        };
+        let told = |laws: &Laws, term: usize| {
+            let own = laws.terms[term];
+            (text(laws, term), own.per.name(), own.twin.map(|twin| text(laws, twin)))
+        };
+        let others: Vec<_> =
+            (0..all.terms.len()).filter(|term| !is_of_turns(&all, *term)).map(|term| told(&all, term)).collect();
+        let kept: Vec<_> = (0..straight.terms.len()).map(|term| told(&straight, term)).collect();
+        assert_eq!(kept, others);
+        assert!(observed.turns() && others.len() + 20 < all.terms.len(), "{}", others.len());
+    }
+
     /// Oracle: the columns of the law itself, and exact derivatives of replays of the formula that it is written as.
     #[test]
     fn every_law_moves_the_robot_as_the_formula_does_that_it_is_written_as() {
@@ -204,7 +227,7 @@ mod tests {
         let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
         let chain = model.chain();
         let steps: Vec<Vec<TrackStep>> = observed.runs.iter().map(|run| steps(run, &chain)).collect();
-        let laws = Laws::of(&steps, &observed.robot);
+        let laws = Laws::of(&steps, &observed.robot, observed.turns());
         let (mut written, mut of_wheels, mut lost) = (0, 0, Vec::new());
         for term in 0..laws.terms.len() {
             let terms: Vec<usize> =

@@ -217,6 +217,7 @@ mod tests {
                 path: None,
                 setup: Default::default(),
                 conditions: Default::default(),
+                knowledge: Default::default(),
             }
         };
         let along = places(&of(&model(1.0, 1.0)));

@@ -68,6 +68,7 @@ impl Exposure {
             Exposure::Way => p.at.length,
             Exposure::WayInSense => p.at.length * p.at.last_turn,
             Exposure::WheelWay(wheel) => p.wheel_way[wheel],
+            Exposure::Rotation | Exposure::TimeInSense if !p.scales.turns => 0.0,
             Exposure::Rotation => p.rotation.abs(),
             Exposure::Time | Exposure::TimeInSense if p.at.stands() => 0.0,
             Exposure::Time => p.at.duration,
@@ -111,6 +112,8 @@ pub struct Scales {
     pub runs: f64,
     /// Wheelbase \[m\].
     pub wheelbase: f64,
+    /// Whether the runs turn.
+    pub turns: bool,
 }
 
 impl Scales {
@@ -124,6 +127,7 @@ impl Scales {
             duration: most(|c| c.time + c.duration),
             runs: observed.runs.len().max(1) as f64,
             wheelbase: observed.robot.drive.wheelbase(),
+            turns: observed.turns(),
         }
     }
 }

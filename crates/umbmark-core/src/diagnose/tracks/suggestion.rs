@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn thresholds_are_tried_at_every_tenth_of_the_greatest_value() {
-        let scales = Scales { speed: 0.2, turn_rate: 1.2, duration: 100.0, runs: 6.0, wheelbase: 0.34 };
+        let scales = Scales { speed: 0.2, turn_rate: 1.2, duration: 100.0, runs: 6.0, wheelbase: 0.34, turns: true };
         let covariate = COVARIATES.iter().find(|covariate| covariate.name == "speed").unwrap();
         let tried: Vec<f64> = family(covariate, &scales).iter().filter_map(|member| Some(member.shape?.1)).collect();
         assert_eq!(tried, [0.02, 0.04, 0.06, 0.08, 0.1, 0.12, 0.14, 0.16, 0.18]);

@@ -19,8 +19,11 @@ use nalgebra::{DMatrix, DVector};
 const FEWEST: usize = 4;
 /// Maximum p over all that is compared, of all runs and without the one that is farthest off.
 const SURE: [f64; 2] = [1e-4, 1e-2];
-/// Least standard deviation between runs, ...
+/// A run whose own value is so far from the common one hardly shows it: the estimate is linear.
+const FAR: f64 = 0.1;
+/// Least standard deviation between runs, and the greatest that a robot can have: beyond, runs hardly show the value, ...
 const LEAST: f64 = 5e-4;
+const MOST: f64 = 0.05;
 /// ... and the share by which errors along the way fall at least with each run's own values.
 const LEAST_FALL: f64 = 0.2;
 /// Maximum p of a trend in the order of the runs.
@@ -141,7 +144,7 @@ impl Estimates {
 pub(super) fn unequal(exam: &Examination) -> Option<Reason> {
     let columns = first_columns(exam);
     let told = (0..exam.fitted.observed.runs.len()).map(|run| steps(exam, &products_of(exam, run), &columns));
-    let told: Vec<_> = told.collect();
+    let told: Vec<_> = told.map(|told| told.filter(|(own, _)| own.amax() < FAR)).collect();
     let runs = told.iter().flatten().count();
     if columns.is_empty() || runs < FEWEST {
         return None;
@@ -155,7 +158,7 @@ pub(super) fn unequal(exam: &Examination) -> Option<Reason> {
     let differs = |place: &usize| {
         let estimates = &all[*place];
         let sure = sure(estimates, SURE[0]) && sure(&estimates.without_farthest(), SURE[1]);
-        sure && estimates.between() > LEAST
+        sure && (LEAST..MOST).contains(&estimates.between())
     };
     let place = (0..columns.len()).filter(differs).min_by(|a, b| all[*a].p().total_cmp(&all[*b].p()))?;
     let value = exam.fitted.model.values().nth(exam.fitted.free[columns[place]]).unwrap_or(1.0);
@@ -227,6 +230,9 @@ mod tests {
         assert_eq!((told.trend, told.pieces), (None, false));
         assert!(told.sentence().ends_with("reference? Give runs of one kind as a dataset of their own"));
         assert_eq!(of_scales(&[1.0, 1.01]).1, []);
+        // No robot differs so from run to run.
+        let (verdict, told) = of_scales(&[0.8, 1.2, 0.85, 1.15, 0.9, 1.1]);
+        assert!(verdict != Verdict::Explained && told.is_empty(), "{told:?}");
         assert_eq!(of_scales(&[]).1, []);
     }
 

@@ -4,11 +4,13 @@
 //! [`calibrate`](crate::calibrate); so E_d and E_b are the same there and here. The covariance of the estimates follows from the
 //! pooled scatter that the runs really show.
 
-use super::{Ends, mirrored};
+use super::{End, Ends, mirrored};
 use crate::effect::Model;
-use crate::evidence::{Estimate, Evidence, FAR_FIT, FitError, STARTS, is_possible};
-use crate::fit::{self, Problem, RANK_TOLERANCE, null_directions};
+use crate::evidence::{Estimate, Evidence, FAR_FIT, FitError, Leaves, STARTS, is_possible};
+use crate::fit::{self, Known, Prior, Problem, RANK_TOLERANCE, null_directions};
 use crate::geometry::{Dual, LANES, Pose2, seeded};
+use crate::likelihood::{Ended, KnowledgeError};
+use crate::path::Direction;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// A component of a null direction below this is rounding.
@@ -34,6 +36,8 @@ pub(crate) struct Fitted {
     pub estimates: Vec<Estimate>,
     /// Their covariance; `None` for too few runs.
     pub covariance: Option<DMatrix<f64>>,
+    /// How the fit ended.
+    pub ended: Ended,
 }
 
 impl Fitted {
@@ -41,7 +45,8 @@ impl Fitted {
         ends.check(model)?;
         let (free, open) = what_shows(ends, model);
         let start: Vec<f64> = model.values().collect();
-        let problem = Returns { ends, model, start: &start, free: &free };
+        let noise = noise_of(ends, model)?;
+        let problem = Returns { ends, model, start: &start, free: &free, noise };
         let first: Vec<f64> = free.iter().map(|i| start[*i]).collect();
         let fit = fit::least_squares(&problem, &first, &SETTLED);
         let fit = problem.searched(fit, &first);
@@ -53,35 +58,52 @@ impl Fitted {
         if fitted.has_formulas() && what_shows(ends, &fitted).0.len() > free.len() {
             return Fitted::new(ends, &fitted);
         }
-        let residuals = ends.residuals(&fitted);
-        let residuals = ends.runs.iter().zip(&residuals).map(|(run, r)| mirrored(run.direction, r)).collect();
+        let residuals = mirrored_residuals(ends, &fitted);
+        // What is held at a bound has no interval.
+        let inside: Vec<usize> = (0..free.len()).filter(|k| !fit.held[*k]).collect();
+        let information = fit.covariance().map(|all| all.select_rows(&inside).select_columns(&inside));
+        let known = problem.known();
+        let priors: Vec<Option<Prior>> = inside.iter().map(|k| known[*k].prior).collect();
+        let free: Vec<usize> = inside.into_iter().map(|k| free[k]).collect();
         let jacobian = slopes(ends, &fitted, &free);
-        let mut result =
-            Fitted { model: fitted, free, open, residuals, jacobian, estimates: Vec::new(), covariance: None };
-        result.estimate(ends, fit.covariance());
+        let ended = Ended { termination: fit.termination, steps: fit.iterations };
+        let (estimates, covariance) = (Vec::new(), None);
+        let mut result = Fitted { model: fitted, free, open, residuals, jacobian, estimates, covariance, ended };
+        result.estimate(ends, information, &priors, noise);
         Ok(result)
+    }
+
+    /// What the model leaves of the return poses.
+    pub fn leaves(&self, ends: &Ends) -> Leaves {
+        let root = |sum: f64| (sum / self.residuals.len().max(1) as f64).sqrt();
+        let criteria = self.criteria(ends);
+        Leaves {
+            position: root(self.residuals.iter().map(|r| r.xy().norm_squared()).sum()),
+            heading: ends.with_heading.then(|| root(self.residuals.iter().map(|r| r.z * r.z).sum())),
+            aicc: criteria.map(|c| c[0]),
+            bic: criteria.map(|c| c[1]),
+            ..Leaves::default()
+        }
+    }
+
+    /// AICc and BIC, if there are enough runs. From the normal likelihood of N runs with one unknown covariance: N ln |Σ̂| and 2k or k ln N
+    /// for k parameters.
+    pub fn criteria(&self, ends: &Ends) -> Option<[f64; 2]> {
+        let (d, n) = (ends.coordinates(), self.residuals.len() as f64);
+        let covariance = self.residuals.iter().map(|r| r * r.transpose()).sum::<Matrix3<f64>>() / n;
+        let determinant = covariance.view((0, 0), (d, d)).into_owned().cholesky()?.determinant();
+        let (values, parameters) = (n * d as f64, (self.free.len() + d * (d + 1) / 2) as f64);
+        let spare = values - parameters - 1.0;
+        if !(determinant > 0.0) || spare <= 0.0 {
+            return None;
+        }
+        let deviance = n * libm::log(determinant);
+        Some([deviance + 2.0 * parameters * values / spare, deviance + parameters * libm::log(n)])
     }
 
     /// Pooled scatter of the residuals about the mean of their direction, and its degrees of freedom.
     pub fn scatter(&self, ends: &Ends) -> (Matrix3<f64>, usize) {
-        let mut squares = Matrix3::zeros();
-        let mut freedom = 0;
-        for direction in crate::path::Direction::BOTH {
-            let of_direction: Vec<&Vector3<f64>> = ends
-                .runs
-                .iter()
-                .zip(&self.residuals)
-                .filter(|(run, _)| run.direction == direction)
-                .map(|p| p.1)
-                .collect();
-            if of_direction.is_empty() {
-                continue;
-            }
-            let mean = of_direction.iter().fold(Vector3::zeros(), |sum, r| sum + **r) / of_direction.len() as f64;
-            squares += of_direction.iter().map(|r| (*r - mean) * (*r - mean).transpose()).sum::<Matrix3<f64>>();
-            freedom += of_direction.len() - 1;
-        }
-        (squares / freedom.max(1) as f64, freedom)
+        scatter(ends, &self.residuals)
     }
 
     /// The derivatives by the same values where the model does nothing, all its values at their defaults, on the path that was
@@ -90,17 +112,22 @@ impl Fitted {
         slopes(&ends.as_meant(), &self.model.at_rest(), &self.free)
     }
 
-    fn estimate(&mut self, ends: &Ends, information: Option<DMatrix<f64>>) {
+    /// `priors` are earlier measurements of the free values, in units of the weighted residuals, whose standard deviation is `noise`.
+    fn estimate(&mut self, ends: &Ends, information: Option<DMatrix<f64>>, priors: &[Option<Prior>], noise: f64) {
         let (scatter, freedom) = self.scatter(ends);
         let d = ends.coordinates();
         if let Some(inverse) = information.filter(|_| freedom > 0) {
             let mut covariance = DMatrix::zeros(self.free.len(), self.free.len());
             for (run, slope) in ends.runs.iter().zip(&self.jacobian) {
-                // The weights are lower triangular in the run's own frame; mirroring twice is no change.
-                let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, run.direction.sign(), run.direction.sign()));
-                let weight = (mirror * run.weight * mirror).view((0, 0), (d, d)).into_owned();
+                let weight = mirrored_weight(run).view((0, 0), (d, d)).into_owned();
                 let influence = &inverse * slope.rows(0, d).transpose() * weight.transpose() * weight;
                 covariance += &influence * scatter.view((0, 0), (d, d)) * influence.transpose();
+            }
+            for (k, prior) in priors.iter().enumerate() {
+                if let Some(Prior { sd, .. }) = prior {
+                    let influence = inverse.column(k) * (noise / sd);
+                    covariance += &influence * influence.transpose();
+                }
             }
             self.covariance = Some(covariance);
         }
@@ -115,6 +142,50 @@ impl Fitted {
         };
         self.estimates = self.free.iter().enumerate().map(estimate).collect();
     }
+}
+
+/// Observed minus predicted, in the mirrored frame, run by run.
+fn mirrored_residuals(ends: &Ends, model: &Model) -> Vec<Vector3<f64>> {
+    let residuals = ends.residuals(model);
+    ends.runs.iter().zip(&residuals).map(|(run, r)| mirrored(run.direction, r)).collect()
+}
+
+/// The weight of a run in the mirrored frame. It is lower triangular in the run's own; mirroring twice is no change.
+fn mirrored_weight(run: &End) -> Matrix3<f64> {
+    let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, run.direction.sign(), run.direction.sign()));
+    mirror * run.weight * mirror
+}
+
+/// Pooled scatter of residuals about the mean of their direction, and its degrees of freedom.
+fn scatter(ends: &Ends, residuals: &[Vector3<f64>]) -> (Matrix3<f64>, usize) {
+    let mut squares = Matrix3::zeros();
+    let mut freedom = 0;
+    for direction in Direction::BOTH {
+        let of_direction: Vec<&Vector3<f64>> =
+            ends.runs.iter().zip(residuals).filter(|(run, _)| run.direction == direction).map(|p| p.1).collect();
+        if of_direction.is_empty() {
+            continue;
+        }
+        let mean = of_direction.iter().fold(Vector3::zeros(), |sum, r| sum + **r) / of_direction.len() as f64;
+        squares += of_direction.iter().map(|r| (*r - mean) * (*r - mean).transpose()).sum::<Matrix3<f64>>();
+        freedom += of_direction.len() - 1;
+    }
+    (squares / freedom.max(1) as f64, freedom)
+}
+
+/// Standard deviation of weighted residuals where it counts: earlier measurements are weighed against it.
+fn noise_of(ends: &Ends, model: &Model) -> Result<f64, FitError> {
+    if !ends.knowledge.has_priors() {
+        return Ok(1.0);
+    }
+    let (scatter, freedom) = scatter(ends, &mirrored_residuals(ends, model));
+    let d = ends.coordinates();
+    let of_run = |run: &End| {
+        let weight = mirrored_weight(run).view((0, 0), (d, d)).into_owned();
+        (&weight * scatter.view((0, 0), (d, d)) * weight.transpose()).trace()
+    };
+    let variance = ends.runs.iter().map(of_run).sum::<f64>() / (ends.runs.len() * d) as f64;
+    if freedom > 0 && variance > 0.0 { Ok(variance.sqrt()) } else { Err(KnowledgeError::NoScatter.into()) }
 }
 
 /// Effect and parameter of each value of a model.
@@ -176,8 +247,16 @@ fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     // What other effects share with these is attributed to these.
     let first = &model.robot().drive.first_effects()[..2];
     asked.sort_by_key(|i| !first.contains(&names[*i].0));
-    let problem = Returns { ends, model: &nominal, start: &start, free: &asked };
-    let jacobian = problem.jacobian(&asked.iter().map(|i| start[*i]).collect::<Vec<_>>());
+    let problem = Returns { ends, model: &nominal, start: &start, free: &asked, noise: 1.0 };
+    let mut jacobian = problem.jacobian(&asked.iter().map(|i| start[*i]).collect::<Vec<_>>());
+    // An earlier measurement shows its number.
+    for (k, known) in ends.knowledge.of(model, &asked).into_iter().enumerate() {
+        if known.prior.is_some() {
+            let (rows, length) = (jacobian.nrows(), jacobian.column(k).norm());
+            jacobian = jacobian.resize_vertically(rows + 1, 0.0);
+            jacobian[(rows, k)] = length;
+        }
+    }
     let columns: Vec<DVector<f64>> = jacobian.column_iter().map(|column| column.into_owned()).collect();
     let shows = |kept: &[usize]| {
         let matrix = DMatrix::from_columns(&kept.iter().map(|k| columns[*k].clone()).collect::<Vec<_>>());
@@ -211,6 +290,8 @@ struct Returns<'a> {
     model: &'a Model,
     start: &'a [f64],
     free: &'a [usize],
+    /// Standard deviation of weighted residuals, if there is an earlier measurement.
+    noise: f64,
 }
 
 impl Returns<'_> {
@@ -266,5 +347,13 @@ impl Problem for Returns<'_> {
             }
         }
         DMatrix::from_vec(self.rows(), self.free.len(), rows)
+    }
+
+    fn known(&self) -> Vec<Known> {
+        let mut known = self.ends.knowledge.of(self.model, self.free);
+        for prior in known.iter_mut().filter_map(|known| known.prior.as_mut()) {
+            prior.sd /= self.noise;
+        }
+        known
     }
 }

@@ -4,6 +4,7 @@ use super::errors::{Errors, Misses};
 use super::system::{Projected, System, Unit};
 use crate::dataset::Levels;
 use crate::effect::ModelError;
+use crate::evidence::Leaves;
 use crate::likelihood::{Column, Fitted, Noise};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -40,8 +41,9 @@ impl Alone {
     /// A model as it was fitted.
     pub fn new(fitted: Fitted) -> Alone {
         let (observed, columns) = (&fitted.observed, fitted.all_columns());
-        let system = System::new(observed, &fitted.noise, &columns);
-        let usual = fitted.usual_noise.then(|| System::new(observed, &Noise::default(), &columns));
+        let of_noise = |noise: &Noise| System::new(observed, noise, &columns).with_priors(&fitted.priors());
+        let system = of_noise(&fitted.noise);
+        let usual = fitted.usual_noise.then(|| of_noise(&Noise::default()));
         // These are the errors that any user of the model gets: a run restarts where its track jumps, but not at the smaller outliers of
         // this fit.
         let which = (0..system.width).collect();
@@ -153,6 +155,14 @@ impl Alone {
         let now = DVector::from_iterator(self.fitted.free.len(), self.fitted.free.iter().map(|place| values[*place]));
         let of = |fold| &now + self.own(&Projected::fit(&self.system.without(fold), &self.together())).1;
         (0..self.system.folds()).into_par_iter().map(of).collect()
+    }
+
+    /// What the model leaves of the runs it was fitted to.
+    pub fn leaves(&self) -> Leaves {
+        let (aicc, bic, root) = self.criteria();
+        let (rows, Misses { position, heading, .. }) = (self.system.rows, self.errors.in_sample());
+        let chi2 = Some(root * root * rows as f64);
+        Leaves { position, heading, chi2, residuals: Some(rows), aicc: Some(aicc), bic: Some(bic) }
     }
 
     /// AICc, BIC and the root mean square of the whitened residuals, the effects of the reference fitted out.

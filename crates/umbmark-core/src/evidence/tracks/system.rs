@@ -73,6 +73,19 @@ impl System {
         System { rows: units.iter().map(|unit| unit.rows).sum(), units, width, whole }
     }
 
+    /// With the residuals of earlier measurements, which every fold has: the column of each, how far it is above the value there is now, and its
+    /// standard deviation.
+    pub fn with_priors(mut self, priors: &[(usize, f64, f64)]) -> System {
+        let residual = self.residual();
+        for &(column, above, sd) in priors {
+            let row = [(column, 1.0 / sd), (residual, above / sd)];
+            for ((i, a), (j, b)) in row.iter().flat_map(|a| row.map(|b| (*a, b))) {
+                self.whole[(i, j)] += a * b;
+            }
+        }
+        self
+    }
+
     /// Products of the same columns, with multiples of some of them added to the residual.
     pub fn with_added(products: &DMatrix<f64>, columns: &[usize], times: &[f64]) -> DMatrix<f64> {
         let (mut products, residual) = (products.clone(), products.ncols() - 1);

@@ -52,8 +52,8 @@ pub struct Laws {
 }
 
 impl Laws {
-    /// Those of the steps of some runs of a robot.
-    pub fn of(steps: &[Vec<TrackStep>], robot: &Robot) -> Laws {
+    /// Those of the steps of some runs of a robot; none of turns where `turns` says that the runs do not turn.
+    pub fn of(steps: &[Vec<TrackStep>], robot: &Robot, turns: bool) -> Laws {
         let wheelbase = robot.drive.wheelbase();
         let extent = Extent::of(steps, wheelbase);
         let reverses = extent.back > BACK * extent.way;
@@ -66,7 +66,21 @@ impl Laws {
             laws.add_signed(Per::Metre, Per::Ahead);
         }
         laws.add_signed(Per::Radian, Per::Turned);
+        if !turns {
+            laws.drop_turns();
+        }
         laws
+    }
+
+    /// Drops what depends on turning: where runs do not turn, turn rates and rotations are single counts.
+    fn drop_turns(&mut self) {
+        let is_of_turns = |term: &Term| {
+            matches!(term.per, Per::Radian | Per::Turned) || self.functions[term.function].formula.0.contains("turn")
+        };
+        let kept: Vec<usize> = (0..self.terms.len()).filter(|term| !is_of_turns(&self.terms[*term])).collect();
+        let place = |term: usize| kept.binary_search(&term).ok();
+        let with_places = |term: &usize| Term { twin: self.terms[*term].twin.and_then(place), ..self.terms[*term] };
+        self.terms = kept.iter().map(with_places).collect();
     }
 
     /// The name that a term has as an effect: "periodic_yaw", "forward_by_speed".

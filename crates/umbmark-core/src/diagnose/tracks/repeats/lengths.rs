@@ -65,6 +65,7 @@ mod tests {
             path: Some(Path::umbmark()),
             setup: Default::default(),
             conditions: Default::default(),
+            knowledge: Default::default(),
         };
         let of = |value: f64, standard_error: f64| {
             let length = Estimate { effect: "own", parameter: "c", value, standard_error, degrees_of_freedom: 9.0 };
