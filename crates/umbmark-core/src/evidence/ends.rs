@@ -229,7 +229,7 @@ impl Evidence for Ends {
         self.check_columns()?;
         let fitted = Fitted::new(self, model)?;
         let leaves = fitted.leaves(self);
-        let Fitted { model, estimates, covariance, ended, .. } = fitted;
+        let Fitted { model, estimates, covariance, ended, held, .. } = fitted;
         let correlations = correlations(covariance.as_ref());
         let (setup, knowledge) = (Arc::clone(&self.setup), Arc::clone(&self.knowledge));
         Ok(Fit {
@@ -244,6 +244,7 @@ impl Evidence for Ends {
             ended,
             leaves,
             knowledge,
+            held,
             without_priors: Vec::new(),
         })
     }

@@ -57,6 +57,8 @@ pub struct Fit {
     pub leaves: Leaves,
     /// What was known of some numbers besides the runs.
     pub knowledge: Arc<Knowledge>,
+    /// Which of the model's [values](Model::values) ended at a bound.
+    pub held: Vec<usize>,
     /// What the runs say without earlier measurements, where there were any.
     pub without_priors: Vec<Estimate>,
 }
@@ -97,8 +99,7 @@ impl Fit {
         self.knowledge.numbers().iter().filter_map(|number| {
             let KnownNumber { effect, parameter, known } = number;
             let value = self.model.get(effect, parameter)?;
-            let own = self.estimates.iter().find(|e| e.effect == effect && e.parameter == parameter);
-            let held = own.is_none() && (value <= known.low || value >= known.high);
+            let held = self.model.place_of(effect, parameter).is_some_and(|place| self.held.contains(&place));
             let alone = self.without_priors.iter().find(|e| e.effect == effect && e.parameter == parameter);
             let contradiction = known
                 .prior
@@ -239,6 +240,13 @@ mod tests {
         let without = fit(&data, &model).unwrap();
         let open = ("turn_slip", "share");
         assert_eq!(estimate(&without, open), None);
+        // What is not shown is not held, though it stays at the bound, or beyond it.
+        for (low, high) in [(0.0, 1.0), (0.1, 1.0)] {
+            let mut knowledge = Knowledge::default();
+            knowledge.bound(open.0, open.1, low, high).unwrap();
+            let bounded = fit_knowing(&data, &model, knowledge).unwrap();
+            assert!(bounded.known().all(|known| !known.held && known.value == 0.0));
+        }
         let mut knowledge = Knowledge::default();
         knowledge.measured(open.0, open.1, 0.01, 1e-5).unwrap();
         let with = estimate(&fit_knowing(&data, &model, knowledge).unwrap(), open).unwrap();

@@ -55,7 +55,8 @@ impl Evidence for Observed {
     }
 
     fn fit(&self, model: &Model) -> Result<Fit, FitError> {
-        let mut fit = told(fit_within(self, model)?);
+        let (alone, held) = fit_within(self, model)?;
+        let mut fit = told(alone);
         // A bound fixes a number in this fit only: numbers with bounds are free ones.
         for KnownNumber { effect, parameter, .. } in self.knowledge.numbers() {
             fit.model.release(effect, parameter);
@@ -66,6 +67,8 @@ impl Evidence for Observed {
                 fit.model.adopt(part);
             }
         }
+        let place = |number: &KnownNumber| fit.model.place_of(&number.effect, &number.parameter);
+        fit.held = held.iter().filter_map(place).collect();
         Ok(fit)
     }
 }
@@ -77,8 +80,9 @@ pub(crate) fn fit_alone(observed: &Observed, model: &Model) -> Result<Alone, Fit
 }
 
 /// The same with the values that end at a bound kept there: the noise is that beside these, and nothing stands for them.
-fn fit_within(observed: &Observed, model: &Model) -> Result<Alone, FitError> {
-    let mut kept = model.clone();
+/// Which these are is told too.
+fn fit_within(observed: &Observed, model: &Model) -> Result<(Alone, Vec<KnownNumber>), FitError> {
+    let (mut kept, mut all) = (model.clone(), Vec::new());
     loop {
         let alone = fit_alone(observed, &kept)?;
         let fitted = alone.fitted();
@@ -87,14 +91,15 @@ fn fit_within(observed: &Observed, model: &Model) -> Result<Alone, FitError> {
         });
         let held: Vec<KnownNumber> = held.cloned().collect();
         if held.is_empty() {
-            return Ok(alone);
+            return Ok((alone, all));
         }
-        for KnownNumber { effect, parameter, .. } in held {
-            if let Some(bound) = fitted.model.get(&effect, &parameter) {
-                kept.set(&effect, &parameter, bound)?;
+        for KnownNumber { effect, parameter, .. } in &held {
+            if let Some(bound) = fitted.model.get(effect, parameter) {
+                kept.set(effect, parameter, bound)?;
             }
-            kept.fix(&effect, &parameter)?;
+            kept.fix(effect, parameter)?;
         }
+        all.extend(held);
     }
 }
 
@@ -105,7 +110,7 @@ pub(crate) fn told(alone: Alone) -> Fit {
     let (estimates, correlations) = (estimates(&fitted), correlations(fitted.covariance.as_ref()));
     let Fitted { model, noise, outliers, usual_noise, taken, observed, ended, .. } = fitted;
     let (noise, setup, knowledge) = (Some(noise), observed.setup, observed.knowledge);
-    let without_priors = Vec::new();
+    let (held, without_priors) = (Vec::new(), Vec::new());
     Fit {
         model,
         estimates,
@@ -118,6 +123,7 @@ pub(crate) fn told(alone: Alone) -> Fit {
         ended,
         leaves,
         knowledge,
+        held,
         without_priors,
     }
 }

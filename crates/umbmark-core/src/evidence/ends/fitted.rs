@@ -38,6 +38,8 @@ pub(crate) struct Fitted {
     pub covariance: Option<DMatrix<f64>>,
     /// How the fit ended.
     pub ended: Ended,
+    /// Indices, among the model's values, of what ended at a bound.
+    pub held: Vec<usize>,
 }
 
 impl Fitted {
@@ -64,11 +66,12 @@ impl Fitted {
         let information = fit.covariance().map(|all| all.select_rows(&inside).select_columns(&inside));
         let known = problem.known();
         let priors: Vec<Option<Prior>> = inside.iter().map(|k| known[*k].prior).collect();
+        let held = (0..free.len()).filter(|k| fit.held[*k]).map(|k| free[k]).collect();
         let free: Vec<usize> = inside.into_iter().map(|k| free[k]).collect();
         let jacobian = slopes(ends, &fitted, &free);
         let ended = Ended { termination: fit.termination, steps: fit.iterations };
         let (estimates, covariance) = (Vec::new(), None);
-        let mut result = Fitted { model: fitted, free, open, residuals, jacobian, estimates, covariance, ended };
+        let mut result = Fitted { model: fitted, free, open, residuals, jacobian, estimates, covariance, ended, held };
         result.estimate(ends, information, &priors, noise);
         Ok(result)
     }
