@@ -35,7 +35,7 @@ use of_runs::Runs;
 
 pub use crate::dataset::stated::{Condition, Kind, SESSION};
 pub use between::Between;
-pub(crate) use between::between;
+pub(crate) use between::{between, mean_and_deviation};
 pub use numbers::Number;
 
 /// A difference as large as this share of tests would have found is told as what could be seen.

@@ -17,7 +17,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::conditions::{Number, between};
+use crate::conditions::{Number, between, mean_and_deviation};
 use crate::dataset::Dataset;
 use crate::diagnose::{Options, Verdict, diagnose, first_model};
 use crate::evidence::{Estimate, fit, fit_to_returns};
@@ -197,8 +197,8 @@ fn farthest(rows: &[Row], wanted: Number) -> Vec<(usize, f64)> {
         let robots = left.len() as f64;
         let values: Vec<f64> = left.iter().map(|(_, value, _)| *value).collect();
         let errors: Vec<f64> = left.iter().map(|(.., error)| *error).collect();
-        let Some(spread) = between(&values, &errors, 0.95).filter(|_| left.len() >= FEWEST) else { break };
-        let off = |(_, value, error): &(usize, f64, f64)| (value - spread.mean) / spread.deviation.hypot(*error);
+        let Some((mean, apart)) = mean_and_deviation(&values, &errors).filter(|_| left.len() >= FEWEST) else { break };
+        let off = |(_, value, error): &(usize, f64, f64)| (value - mean) / apart.hypot(*error);
         let deviation = (left.iter().map(|one| off(one).powi(2)).sum::<f64>() / (robots - 1.0)).sqrt();
         let Some(place) = (0..left.len()).max_by(|a, b| off(&left[*a]).abs().total_cmp(&off(&left[*b]).abs())) else {
             break;

@@ -10,6 +10,8 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuildError;
 
+mod alone;
+
 /// Time between two looks at whether Ctrl-C was pressed, and two calls of a progress function.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -72,11 +74,15 @@ impl<T: Send + 'static> Watched<T> {
         let watch = Watch::default();
         let (sender, receiver) = sync_channel(1);
         let told = watch.clone();
+        let whole = move || catch_unwind(AssertUnwindSafe(|| work(&told)));
+        // Nobody listens where Python has given up.
+        if threads == 1 {
+            alone::run(Box::new(move |begun| drop(sender.send(begun.map(|()| whole())))));
+            return Watched { watch, receiver };
+        }
         std::thread::spawn(move || {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let result = pool.map(|pool| catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&told)))));
-            // Nobody listens where Python has given up.
-            let _ = sender.send(result);
+            drop(sender.send(pool.map(|pool| pool.install(whole))));
         });
         Watched { watch, receiver }
     }

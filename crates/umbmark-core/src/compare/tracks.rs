@@ -8,6 +8,7 @@
 mod covariate;
 mod followed;
 mod mean;
+mod mounted;
 mod parts;
 mod rates;
 mod sentences;
@@ -22,7 +23,7 @@ use crate::effect::Model;
 use crate::evidence::{self, Evidence, FitError};
 use crate::geometry::Pose2;
 use crate::inspect::moves_of;
-use crate::likelihood::{Observed, Taken};
+use crate::likelihood::{Noise, Observed, Taken};
 use crate::path::Direction;
 use crate::setup::Setup;
 use followed::{Followed, MeasuredBlock};
@@ -30,6 +31,7 @@ use std::sync::Arc;
 
 pub use covariate::{COVARIATES, Covariate, Rate, Span};
 pub use mean::Mean;
+pub(crate) use mounted::{Mounted, fixed, mounted};
 pub use parts::{By, Part, Share};
 pub use rates::{Against, Bin, Overall};
 pub use worth::Test;
@@ -167,20 +169,36 @@ pub(super) fn compare(
     options: &Options,
 ) -> Result<TrackComparison, FitError> {
     check(observed, models)?;
-    let judge = |(name, model): &(String, Model)| {
+    let mut remarks = remarks(observed);
+    let mut judge = |(name, model): &(String, Model)| {
         let (model, taken) = with_reference(observed, model)?;
         let observed = observed.along(&model);
-        let errors = TrackErrors { taken, ..errors(name, data, &observed, &model, options) };
-        let (reasons, remains) = doubts_as_written(&observed, &model, options);
-        let judged = TracksJudged { errors, reasons, remains, sentences: Vec::new() };
+        let judge = |model: &Model| {
+            let (reasons, remains) = doubts_as_written(&observed, model, options);
+            let errors = errors(name, data, &observed.along(model), model, options);
+            TracksJudged { errors, reasons, remains, sentences: Vec::new() }
+        };
+        let mut judged = judge(&model);
+        if judged.reasons.is_empty()
+            && judged.explains(options.size) == Some(false)
+            && let Some(Mounted { model, words }) = mounted(&observed, &model, &Noise::default(), options)?
+        {
+            let beside = judge(&model);
+            if beside.explains(options.size) == Some(true) {
+                judged = beside;
+                remarks.push(format!("{name} is judged with a mounting of the reference that it lacks. {words}"));
+            }
+        }
+        judged.errors.taken = taken;
         Ok(TracksJudged { sentences: sentences::of(&judged, options.size), ..judged })
     };
+    let judged = models.iter().map(&mut judge).collect::<Result<_, FitError>>()?;
     let of = |direction| observed.runs.iter().filter(|run| run.direction == direction).count();
     Ok(TrackComparison {
         runs: [of(Some(Direction::Cw)), of(Some(Direction::Ccw)), of(None)],
         poses: observed.runs.iter().map(|run| run.seen.len()).sum(),
-        models: models.iter().map(judge).collect::<Result<_, FitError>>()?,
-        remarks: remarks(observed),
+        models: judged,
+        remarks,
         setup: Arc::clone(&observed.setup),
     })
 }

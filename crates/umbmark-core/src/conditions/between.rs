@@ -30,6 +30,8 @@ pub struct Between {
 
 /// Steps of a search that halves; 2^-200 is nothing.
 const HALVINGS: usize = 200;
+/// A maximum in the logarithm is found to this, which changes the likelihood by nothing.
+const FOUND: f64 = 1e-9;
 
 /// Of values with their standard errors; `None` for fewer than two.
 pub(crate) fn between(values: &[f64], errors: &[f64], level: f64) -> Option<Between> {
@@ -37,12 +39,8 @@ pub(crate) fn between(values: &[f64], errors: &[f64], level: f64) -> Option<Betw
         return None;
     }
     let variances: Vec<f64> = errors.iter().map(|error| error * error).collect();
-    let spread =
-        values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - values.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = 4.0 * spread * spread + variances.iter().sum::<f64>();
-    // The likelihood has one maximum for values as these; a search in the logarithm finds it to a millionth.
-    let likelihood = |square: f64| of_likelihood(values, &variances, square);
-    let square = largest(&likelihood, most);
+    let most = most(values, &variances);
+    let square = likeliest(values, &variances);
     let (weights, mean) = weighted(values, &variances, square);
     let pooled = values.iter().zip(&variances).map(|(x, v)| mean + square / (square + v) * (x - mean)).collect();
     let freedom = (values.len() - 1) as f64;
@@ -58,6 +56,34 @@ pub(crate) fn between(values: &[f64], errors: &[f64], level: f64) -> Option<Betw
         mean,
         mean_error: 1.0 / weights.sqrt(),
     })
+}
+
+/// Their mean and the standard deviation between them; `None` for fewer than two.
+pub(crate) fn mean_and_deviation(values: &[f64], errors: &[f64]) -> Option<(f64, f64)> {
+    if values.len() < 2 {
+        return None;
+    }
+    let variances: Vec<f64> = errors.iter().map(|error| error * error).collect();
+    let square = likeliest(values, &variances);
+    Some((weighted(values, &variances, square).1, square.sqrt()))
+}
+
+/// The variance between levels under which their values are likeliest; where all errors are equal, it is that of the values less theirs.
+fn likeliest(values: &[f64], variances: &[f64]) -> f64 {
+    if variances.windows(2).all(|pair| pair[0] == pair[1]) {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        return (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0) - variances[0]).max(0.0);
+    }
+    // The likelihood has one maximum for values as these.
+    largest(&|square: f64| of_likelihood(values, variances, square), most(values, variances))
+}
+
+/// More than the variance between levels can be.
+fn most(values: &[f64], variances: &[f64]) -> f64 {
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let spread = most - values.iter().copied().fold(f64::INFINITY, f64::min);
+    4.0 * spread * spread + variances.iter().sum::<f64>()
 }
 
 fn weighted(values: &[f64], variances: &[f64], square: f64) -> (f64, f64) {
@@ -82,7 +108,7 @@ fn largest(of: &dyn Fn(f64) -> f64, most: f64) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let at = |x: f64| most * libm::exp(x);
     let (mut low, mut high) = (-40.0, 0.0);
-    for _ in 0..HALVINGS {
+    while high - low > FOUND {
         let [a, b] = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
         if of(at(a)) >= of(at(b)) { high = b } else { low = a }
     }
@@ -107,6 +133,9 @@ fn root(of: &dyn Fn(f64) -> f64, most: f64) -> f64 {
     let mut low = 0.0;
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
         if of(middle) > 0.0 { low = middle } else { high = middle }
     }
     0.5 * (low + high)

@@ -12,7 +12,7 @@ use crate::random::Stream;
 use crate::replay::Track;
 use crate::setup::{Fault, Suspicion};
 use crate::stats::chi_squared_upper_tail;
-use nalgebra::{DVector, Vector3};
+use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -104,12 +104,12 @@ fn the_test_of_the_whole_model_has_its_size_and_plug_in_chi_square_has_not() {
 /// Two contrasts a direction in units of their pooled covariance, as if that were known.
 fn chi_squared_p(ends: &Ends, fitted: &Fitted) -> f64 {
     let side = 4.0;
-    let contrasts = |r: &Vector3<f64>| DVector::from_vec(vec![r.x + r.y, r.z - (r.x - r.y) / side]);
+    let contrasts = |r: &Vector3<f64>| Vector3::new(r.x + r.y, r.z - (r.x - r.y) / side, 0.0);
     let runs: Vec<_> =
         ends.runs.iter().zip(&fitted.residuals).map(|(run, r)| (run.direction as usize, contrasts(r))).collect();
-    let moments = Moments::of(&runs);
-    let inverse = (&moments.scatter / moments.freedom()).try_inverse().unwrap();
-    let squares = |g: usize| moments.count(g) * moments.means[g].dot(&(&inverse * &moments.means[g]));
+    let moments = Moments::of(&runs, 2);
+    let inverse = (moments.scatter / moments.freedom()).try_inverse().unwrap();
+    let squares = |g: usize| moments.count(g) * moments.means[g].dot(&(inverse * moments.means[g]));
     chi_squared_upper_tail(squares(0) + squares(1), 4.0)
 }
 

@@ -125,9 +125,18 @@ impl Ends {
         self.runs.push(End { name: drive.name, direction, track, seen, weight: drive.weight });
     }
 
+    /// Whether the ticks of some run were recorded.
+    pub fn is_recorded(&self) -> bool {
+        self.tracks.iter().any(|track| track.pieces.is_none())
+    }
+
     /// The same runs, with the ticks of the commanded path if it is known.
     fn as_meant(&self) -> Ends {
         let Some(path) = &self.path else { return self.clone() };
+        // What was not recorded is taken to be what was meant.
+        if !self.is_recorded() {
+            return self.clone();
+        }
         let meant = |direction: Direction| Believed {
             whole: Track::from_path(path, direction, &self.robot),
             pieces: Some(Track::in_pieces(path, direction, &self.robot)),

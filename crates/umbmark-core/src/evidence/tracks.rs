@@ -2,6 +2,7 @@
 
 mod alone;
 mod errors;
+mod no_surer;
 mod packed;
 mod possible;
 mod silent;
@@ -18,6 +19,7 @@ use std::sync::Arc;
 
 pub(crate) use alone::{Alone, trusted};
 pub(crate) use errors::{Errors, LEAST_GAIN, Misses};
+pub(crate) use no_surer::no_surer;
 pub(crate) use packed::Packed;
 pub(crate) use possible::{fit_possible, is_possible};
 pub(crate) use silent::{last_part, silent, without, without_silent_taken};
@@ -56,7 +58,7 @@ impl Evidence for Observed {
 
     fn fit(&self, model: &Model) -> Result<Fit, FitError> {
         let (alone, held) = fit_within(self, model)?;
-        let mut fit = told(alone);
+        let mut fit = told(alone)?;
         // A bound fixes a number in this fit only: numbers with bounds are free ones.
         for KnownNumber { effect, parameter, .. } in self.knowledge.numbers() {
             fit.model.release(effect, parameter);
@@ -104,14 +106,14 @@ fn fit_within(observed: &Observed, model: &Model) -> Result<(Alone, Vec<KnownNum
 }
 
 /// A fit as it is reported.
-pub(crate) fn told(alone: Alone) -> Fit {
+pub(crate) fn told(alone: Alone) -> Result<Fit, FitError> {
     let leaves = alone.leaves();
-    let fitted = alone.into_fitted();
+    let fitted = no_surer(alone.into_fitted())?;
     let (estimates, correlations) = (estimates(&fitted), correlations(fitted.covariance.as_ref()));
     let Fitted { model, noise, outliers, usual_noise, taken, observed, ended, .. } = fitted;
     let (noise, setup, knowledge) = (Some(noise), observed.setup, observed.knowledge);
     let (held, without_priors) = (Vec::new(), Vec::new());
-    Fit {
+    Ok(Fit {
         model,
         estimates,
         correlations,
@@ -125,7 +127,7 @@ pub(crate) fn told(alone: Alone) -> Fit {
         knowledge,
         held,
         without_priors,
-    }
+    })
 }
 
 /// Fits the free parameters of a model to the innovations, starting with what the motion says of the reference.
@@ -134,11 +136,17 @@ pub(crate) fn fit(observed: &Observed, model: &Model) -> Result<Fitted, FitError
     observed.check(model)?;
     let (model, taken) = observed.begin(model)?;
     let fitted = Fitted { taken, ..observed.fit(&model, &Noise::default(), &[])? };
-    // A formula whose size started at 0 did not depend on its shape; now it does.
-    if model.has_formulas() && observed.free_values(&fitted.model).len() > fitted.free.len() {
-        return Ok(Fitted { taken: fitted.taken, ..observed.fit(&fitted.model, &fitted.noise, &[])? });
+    // An effect whose size started at 0 did not depend on its shape; now it does. That of the catalogue keeps its usual value where the runs
+    // do not tell it.
+    let has_shapes = model.has_formulas() || !model.shapes().is_empty();
+    if !has_shapes || observed.free_values(&fitted.model).len() <= fitted.free.len() {
+        return Ok(fitted);
     }
-    Ok(fitted)
+    let shaped = observed.fit(&fitted.model, &fitted.noise, &[])?;
+    let is_told = estimates(&shaped).iter().all(|own| own.standard_error.is_finite());
+    let is_allowed = || observed.tracks().all(|track| track.check(&shaped.model).is_ok());
+    let is_kept = model.has_formulas() || (is_told && is_allowed());
+    Ok(if is_kept { Fitted { taken: fitted.taken, ..shaped } } else { fitted })
 }
 
 /// The fitted parameters with their standard errors.

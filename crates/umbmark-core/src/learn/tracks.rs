@@ -2,13 +2,13 @@
 
 use super::misfits::{elsewhere, misfits};
 use super::story::{Crossed, Error, Learnt, MOST_EFFECTS, Step};
-use crate::compare::tracks::against_as_written;
+use crate::compare::tracks::{against_as_written, fixed, mounted};
 use crate::diagnose::tracks::{self, Added, Conclusion, Found, Search, Wanted};
 use crate::diagnose::{Diagnosis, Options, Reason, Verdict};
 use crate::effect::{Model, Part, find};
-use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit, fit_alone, is_possible, told};
+use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit, fit_alone, is_possible, no_surer, told};
 use crate::evidence::{Estimate, Evidence, Fit, FitError};
-use crate::likelihood::{Fitted, NUISANCE, Noise, Observed, USUAL_NOISE, stands_for_the_reference};
+use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE, stands_for_the_reference};
 use crate::watch::{Reached, Watch};
 
 /// The runs do not determine a first effect if its standard error exceeds this multiple of its usual size ...
@@ -176,31 +176,6 @@ fn is_shown(fitted: &Fitted, effect: &str) -> bool {
     is_possible(fitted, effect) && (own.standard_error < OPEN * parameter.typical || off > SURE * own.standard_error)
 }
 
-/// What is said of a model that the tests of `compare` reject only because it lacks effects of the reference that were fitted along with it:
-/// these are part of the fit, and too small to be added.
-fn explained_by_mounting(written: &Fitted, options: &Options) -> Result<Option<String>, FitError> {
-    let mut with = fixed(&written.model);
-    let lacks = |name: &&str| written.model.parts().iter().all(|part| part.effect.name() != *name);
-    for name in NUISANCE.into_iter().filter(lacks) {
-        with.add(name)?.free = true;
-    }
-    if !with.is_free() {
-        return Ok(None);
-    }
-    let fitted = written.observed.fit(&with, &written.noise, &[])?;
-    let is_explained = against_as_written(&fitted.observed, &fitted.model, options).is_none();
-    let is_shown = |own: &Estimate| own.interval(1.0 - options.size).is_some_and(|interval| !interval.contains(0.0));
-    let found = estimates(&fitted).into_iter().filter(is_shown);
-    let sizes: Vec<String> =
-        found.map(|own| format!("{} of {} of {:.2e}", own.parameter, own.effect, own.value)).collect();
-    Ok((is_explained && !sizes.is_empty()).then(|| {
-        format!(
-            "As written, the model leaves an error that depends on the motion: by {}, fitted along with it and too small to be added.",
-            sizes.join(" and ")
-        )
-    }))
-}
-
 /// The final diagnosis, of the learnt model.
 fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Learnt, FitError> {
     let told = Conclusion::new(&mut search, options)?;
@@ -225,7 +200,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     let told: Vec<&str> = search.harmful.iter().chain(&search.inseparable).copied().collect();
     let (left, runs) = (search.left, search.exams[0].fitted.observed.runs.len());
     let Some(last) = search.exams.pop() else { return Err(FitError::NotConverged { how: "has no model" }) };
-    let written = search.written.pop().map_or_else(|| last.fitted.clone(), Alone::into_fitted);
+    let written = no_surer(search.written.pop().map_or_else(|| last.fitted.clone(), Alone::into_fitted))?;
     if written.usual_noise {
         // The model is written with other values than those that were examined: what is said of it is said of these, as `compare` does.
         let (doubts, left) = tracks::doubts_as_written(&written.observed, &written.model, options);
@@ -243,8 +218,17 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     }
     reasons.splice(..0, search.stopped.then_some(Reason::Stopped));
     let against = against_as_written(&written.observed, &written.model, options);
-    let mounted = if against.is_some() { explained_by_mounting(&written, options)? } else { None };
-    hints.extend(mounted.clone());
+    let mounted = match against {
+        Some(_) => mounted(&written.observed, &written.model, &written.noise, options)?,
+        None => None,
+    };
+    hints.extend(mounted.iter().map(|mounted| {
+        format!(
+            "As written, the model leaves an error that depends on the motion, by a mounting of the reference that was fitted along with it \
+             and is too small to be added. {}",
+            mounted.words
+        )
+    }));
     reasons.extend(against.filter(|_| mounted.is_none()));
     let (noise, conditions) = (written.observed.setup.noise.position, crossed(&written));
     reasons.extend(misfits(&steps, runs, noise, is_nominal(&last.fitted)));
@@ -332,18 +316,11 @@ pub(super) fn as_it_is(observed: &Observed, model: &Model) -> Result<Step, FitEr
     Ok(step(plainly(observed, &fixed(model))?, None))
 }
 
-/// A model of which nothing is free.
-fn fixed(model: &Model) -> Model {
-    let mut fixed = Model::new(model.robot());
-    model.parts().iter().for_each(|part| fixed.adopt(&Part { free: false, ..part.clone() }));
-    fixed
-}
-
 /// A model fitted to all runs, and its errors.
 pub(super) fn fit_whole(observed: &Observed, model: &Model) -> Result<(Fit, Step), FitError> {
     let alone = fit_alone(observed, model)?;
     let step = step_of(&alone, None);
-    Ok((told(alone), step))
+    Ok((told(alone)?, step))
 }
 
 /// A model fitted under noise of the usual size: enough for its errors.

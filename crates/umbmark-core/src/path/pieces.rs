@@ -61,6 +61,11 @@ impl Pieces {
         pieces
     }
 
+    /// The same move in pieces that are so many times as long.
+    pub fn coarser(self, times: usize) -> Pieces {
+        Pieces { count: self.count.div_ceil(times), ..self }
+    }
+
     /// The same move as one piece.
     pub fn in_one(self) -> Pieces {
         Pieces { count: self.count.min(1), ..self }

@@ -20,7 +20,7 @@ use crate::parameter::{Parameter, nearest};
 use crate::random::Stream;
 use crate::score::FEWEST_RUNS;
 use crate::stats::{noncentral_f_upper_tail, student_t_quantile};
-use nalgebra::DMatrix;
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::cell::OnceCell;
 
@@ -212,7 +212,7 @@ impl Planned {
     /// The exact test of a unit among all; `None` where it has none.
     fn exact(&self, unit: usize) -> Option<AdjustedTest> {
         self.asked.units[unit].pattern.as_ref()?;
-        let q = self.asked.moments.size();
+        let q = self.asked.moments.size;
         let critical = self.family.critical(unit, self.options.size);
         Some(AdjustedTest { critical, freedom: (2 * self.runs - q) as f64, covariates: q - 1 })
     }
@@ -223,16 +223,16 @@ impl Planned {
         let mut one = self.asked.clone();
         one.units = vec![self.asked.units[unit].clone()];
         let moments = &self.asked.moments;
-        let Some(root) = (&moments.scatter / moments.freedom()).cholesky().map(|c| c.l()) else { return 0.0 };
+        let Some(root) = (moments.scatter / moments.freedom()).cholesky().map(|c| c.l()) else { return 0.0 };
         let seen = |draw: u64| self.certifies(&one, departure, critical, &root, draw);
         let found = (0..self.options.draws as u64).into_par_iter().filter(|draw| seen(*draw)).count();
         found as f64 / self.options.draws as f64
     }
 
-    fn certifies(&self, one: &Asked, departure: f64, critical: f64, root: &DMatrix<f64>, draw: u64) -> bool {
+    fn certifies(&self, one: &Asked, departure: f64, critical: f64, root: &Matrix3<f64>, draw: u64) -> bool {
         let mut stream = Stream::new(self.options.seed, POWER_TESTS, draw);
-        let means = one.units[0].columns.each_ref().map(|column| column * departure);
-        let drawn = Moments::about(self.asked.moments.counts, means, root, &mut stream);
+        let means = one.units[0].columns.map(|column| column * departure);
+        let drawn = Moments::about(self.asked.moments.counts, means, (root, self.asked.moments.size), &mut stream);
         statistics(one, &drawn).is_some_and(|statistics| statistics.units[0] > critical)
     }
 }

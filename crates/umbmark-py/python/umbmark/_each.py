@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import itertools
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -24,6 +25,10 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 Found = TypeVar("Found", bound=Result)
+
+# Tasks for each worker, so that none waits long for another, and the most robots in one.
+TASKS = 16
+MOST_AT_ONCE = 32
 
 
 def fleet(
@@ -216,7 +221,8 @@ def each(
         if executor is None:
             executor = stack.enter_context(ThreadPoolExecutor(workers or os.cpu_count()))
         bar = stack.enter_context(Bar(progress, len(robots), "robots"))
-        told = in_order(executor, work, [*robots.values()], workers)
+        parts = in_order(executor, work, _parts([*robots.values()], workers), workers)
+        told = itertools.chain.from_iterable(parts)
         for name, (result, why) in zip(robots, told, strict=True):
             if result is None:
                 failed[name] = why
@@ -236,10 +242,23 @@ def named(robots: Mapping[str, Data] | Sequence[Data]) -> Mapping[str, Data]:
     return {str(place): data for place, data in enumerate(robots, 1)}
 
 
+def _parts(robots: list[Data], workers: int | None) -> list[list[Data]]:
+    """Give the robots that are asked by one task: it costs about as much as one short call."""
+    tasks = TASKS * (workers or os.cpu_count() or 1)
+    size = max(1, min(MOST_AT_ONCE, len(robots) // tasks))
+    return [robots[begin : begin + size] for begin in range(0, len(robots), size)]
+
+
 def _told(
+    call: Callable[..., Found], keys: Mapping[str, Any], part: list[Data]
+) -> list[tuple[Found | None, str]]:
+    """Give what the call gives of each robot, or why it gives nothing."""
+    return [_told_of(call, keys, data) for data in part]
+
+
+def _told_of(
     call: Callable[..., Found], keys: Mapping[str, Any], data: Data
 ) -> tuple[Found | None, str]:
-    """Give what a call gives, or why it gives nothing."""
     try:
         return call(data, **keys), ""
     except ValueError as error:

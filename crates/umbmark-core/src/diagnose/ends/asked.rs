@@ -1,7 +1,7 @@
 //! The tests with n + n return poses: the residuals of a fitted model against every size of every effect that it lacks.
 
 use super::exact::{Pattern, wilks};
-use super::moments::{Moments, Whitened};
+use super::moments::{Both, Moments, Shift, Whitened};
 use crate::diagnose::candidates::Size;
 use crate::diagnose::likeness::Likeness;
 use crate::diagnose::unseen::{Unseen, Why};
@@ -13,15 +13,15 @@ use crate::fit::RANK_TOLERANCE;
 use crate::geometry::Pose2;
 use crate::parameter::Parameter;
 use crate::stats::f_upper_tail;
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// An effect that moves the means by fewer standard deviations than this at its usual size is not tested.
 const VISIBLE: f64 = 0.5;
 /// A parameter that makes up less than this share of an absorbed effect is not named.
 const SHARE: f64 = 0.1;
 
-/// A shift of the means, clockwise and counter-clockwise.
-pub(crate) type Columns = [DVector<f64>; 2];
+/// A shift of the mean poses, clockwise and counter-clockwise, whitened.
+type Columns = [DVector<f64>; 2];
 
 /// One size of an effect, and its response in the means.
 #[derive(Clone, Debug)]
@@ -29,11 +29,11 @@ pub(crate) struct Unit {
     pub effect: &'static Entry,
     pub parameter: &'static Parameter,
     /// Shift of both means by a unit of the size, in the coordinates of [`Asked::moments`].
-    pub columns: Columns,
+    pub columns: Shift,
     /// Where the exact test applies.
     pub pattern: Option<Pattern>,
     /// The shift in standard deviations of the means, without the part that the model absorbs.
-    pub shift: DVector<f64>,
+    pub shift: Both,
 }
 
 /// Residuals, and the effects that they are tested for.
@@ -42,11 +42,11 @@ pub(crate) struct Asked {
     /// In coordinates in which the pooled scatter is the identity (times ν).
     pub moments: Moments,
     /// The residuals in the same coordinates, with their group.
-    pub runs: Vec<(usize, DVector<f64>)>,
+    pub runs: Vec<(usize, Vector3<f64>)>,
     /// Covariance of evenly noisy wheels in the same coordinates, scaled to the scatter.
-    expected: Option<DMatrix<f64>>,
+    expected: Option<Matrix3<f64>>,
     /// Columns of the model that are projected out; empty if the coordinates already exclude them.
-    pub base: Vec<Columns>,
+    pub base: Vec<Shift>,
     /// The sizes that can be seen.
     pub units: Vec<Unit>,
     /// The effects that cannot.
@@ -92,25 +92,27 @@ impl Asked {
     fn residuals(ends: &Ends, fitted: &Fitted) -> Option<(Asked, Frame)> {
         let d = ends.coordinates();
         let groups: Vec<usize> = ends.runs.iter().map(|run| run.direction as usize).collect();
-        let poses = |v: &Vector3<f64>| DVector::from_column_slice(&v.as_slice()[..d]);
-        let raw: Vec<(usize, DVector<f64>)> =
-            groups.iter().zip(&fitted.residuals).map(|(g, r)| (*g, poses(r))).collect();
-        let raw_moments = Moments::of(&raw);
-        let whitener = whitener(&raw_moments)?;
+        let raw: Vec<(usize, Vector3<f64>)> =
+            groups.iter().zip(&fitted.residuals).map(|(g, r)| (*g, small(r.rows(0, d).iter()))).collect();
+        let whitener = whitener(&Moments::of(&raw, d))?;
         let of_values = |jacobian: &[DMatrix<f64>]| -> Vec<Columns> {
             let column = |j: usize| jacobian.iter().map(move |slope| slope.column(j).rows(0, d).into_owned());
             (0..fitted.free.len()).map(|j| means(&groups, column(j).map(|c| &whitener * c), d)).collect()
         };
         let of_model = of_values(&fitted.jacobian);
-        let (maps, base) = reduced(&of_model, &of_values(&fitted.nominal_jacobian(ends)), d);
-        let runs: Vec<_> = raw.iter().map(|(g, r)| (*g, &maps[*g] * (&whitener * r))).collect();
-        let moments = Moments::of(&runs);
+        let (maps, base): (_, Vec<Columns>) = reduced(&of_model, &of_values(&fitted.nominal_jacobian(ends)), d);
+        let size = maps[0].nrows();
+        let mapped = |(g, r): &(usize, Vector3<f64>)| (*g, small((&maps[*g] * (&whitener * r.rows(0, d))).iter()));
+        let runs: Vec<(usize, Vector3<f64>)> = raw.iter().map(mapped).collect();
+        let moments = Moments::of(&runs, size);
+        let base = base.iter().map(small_shift).collect();
         let counts = [moments.count(0), moments.count(1)];
         let expected = ends.noise_shape().and_then(|shape| {
             let map = &maps[1] * &whitener;
             let shape = &map * shape.view((0, 0), (d, d)) * map.transpose();
-            let scale = shape.clone().cholesky()?.solve(&moments.scatter).trace();
-            Some(shape * (scale / moments.freedom() / moments.size() as f64))
+            let scatter = moments.scatter.view((0, 0), (size, size)).into_owned();
+            let scale = shape.clone().cholesky()?.solve(&scatter).trace() / moments.freedom() / size as f64;
+            Some(Matrix3::from_fn(|i, j| if i.max(j) < size { scale * shape[(i, j)] } else { 0.0 }))
         });
         let (units, unseen, absorbed) = Default::default();
         let asked = Asked { moments, runs, expected, base, units, unseen, absorbed };
@@ -162,7 +164,7 @@ impl Asked {
     /// The same with a size added to what the model explains.
     pub fn explaining(&self, unit: &Unit) -> Asked {
         let mut more = self.clone();
-        more.base.push(unit.columns.clone());
+        more.base.push(unit.columns);
         let whitened = Whitened::new(&more.moments, &more.base);
         more.units.retain_mut(|other| {
             let Some(whitened) = &whitened else { return false };
@@ -200,7 +202,8 @@ impl Asked {
 
     /// Classes of units that these means cannot separate, as indices.
     pub fn classes(&self) -> Vec<Vec<usize>> {
-        let shifts: Vec<DVector<f64>> = self.units.iter().map(|unit| unit.shift.clone()).collect();
+        let shift = |unit: &Unit| DVector::from_column_slice(unit.shift.as_slice());
+        let shifts: Vec<DVector<f64>> = self.units.iter().map(shift).collect();
         classes::complete_linkage(&shifts, classes::ALIKE)
     }
 }
@@ -208,8 +211,9 @@ impl Asked {
 /// L⁻¹ with L Lᵀ the pooled covariance; `None` if it is singular up to rounding.
 fn whitener(moments: &Moments) -> Option<DMatrix<f64>> {
     const ROUNDING: f64 = 1e-9;
-    let covariance = &moments.scatter / moments.freedom();
-    let scales = DVector::from_fn(covariance.nrows(), |i, _| covariance[(i, i)].sqrt());
+    let d = moments.size;
+    let covariance = moments.scatter.view((0, 0), (d, d)).into_owned() / moments.freedom();
+    let scales = DVector::from_fn(d, |i, _| covariance[(i, i)].sqrt());
     // Scatter of the size of rounding errors is treated as zero.
     if scales.iter().any(|s| !(*s > 1e-12)) {
         return None;
@@ -231,6 +235,17 @@ fn means(groups: &[usize], of_runs: impl Iterator<Item = DVector<f64>>, size: us
     [0, 1].map(|g| &sums[g] / runs.iter().filter(|(group, _)| *group == g).count().max(1) as f64)
 }
 
+/// At most three coordinates, filled up with zeros.
+fn small<'a>(coordinates: impl Iterator<Item = &'a f64>) -> Vector3<f64> {
+    let mut small = Vector3::zeros();
+    small.iter_mut().zip(coordinates).for_each(|(own, value)| *own = *value);
+    small
+}
+
+fn small_shift(columns: &Columns) -> Shift {
+    columns.each_ref().map(|column| small(column.iter()))
+}
+
 fn stacked(pattern: &Columns, counts: [f64; 2]) -> DVector<f64> {
     let size = pattern[0].len();
     DVector::from_fn(2 * size, |i, _| counts[i / size].sqrt() * pattern[i / size][i % size])
@@ -238,14 +253,14 @@ fn stacked(pattern: &Columns, counts: [f64; 2]) -> DVector<f64> {
 
 impl Frame {
     /// Response of the means to a unit of a size: whitened, and in the coordinates of the tests.
-    fn columns(&self, ends: &Ends, size: &Size) -> (Columns, Columns) {
+    fn columns(&self, ends: &Ends, size: &Size) -> (Columns, Shift) {
         let of_tracks: Vec<Pose2> = size.columns.iter().map(|c| c[0]).collect();
         let shifts = ends.of_runs(&of_tracks).map(|(direction, pose)| {
             let shift = mirrored(direction, &Vector3::new(pose.x, pose.y, pose.heading));
             &self.whitener * shift.rows(0, self.coordinates)
         });
         let full = means(&self.groups, shifts, self.coordinates);
-        let columns = [0, 1].map(|g| &self.maps[g] * &full[g]);
+        let columns = small_shift(&[0, 1].map(|g| &self.maps[g] * &full[g]));
         (full, columns)
     }
 }

@@ -7,7 +7,7 @@ use super::Moments;
 use crate::evidence::ends::{Ends, Fitted, mirrored};
 use crate::path::{Direction, SQUARE};
 use crate::stats::{Interval, student_t_quantile};
-use nalgebra::{DVector, Vector3};
+use nalgebra::Vector3;
 
 /// A closure contrast: zero for every effect that is the same on every side of the square.
 ///
@@ -45,10 +45,10 @@ pub(crate) fn contrasts(ends: &Ends, fitted: &Fitted, level: f64) -> Vec<Contras
     if ends.counts().contains(&0) {
         return Vec::new();
     }
-    let of_run = |r: &Vector3<f64>| DVector::from_vec(vec![r.x + r.y, r.z - (r.x - r.y) / side]);
-    let runs: Vec<(usize, DVector<f64>)> =
+    let of_run = |r: &Vector3<f64>| Vector3::new(r.x + r.y, r.z - (r.x - r.y) / side, 0.0);
+    let runs: Vec<(usize, Vector3<f64>)> =
         ends.runs.iter().zip(&fitted.residuals).map(|(run, r)| (run.direction as usize, of_run(r))).collect();
-    let moments = Moments::of(&runs);
+    let moments = Moments::of(&runs, 2);
     if moments.freedom() < 1.0 {
         return Vec::new();
     }

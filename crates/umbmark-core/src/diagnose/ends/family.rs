@@ -60,7 +60,7 @@ impl Family {
     /// `None` if the runs have no scatter or no effect is left to test.
     pub fn new(asked: &Asked, options: &Options) -> Option<Family> {
         let observed = statistics(asked, &asked.moments)?;
-        let (counts, size) = (asked.moments.counts, asked.moments.size());
+        let (counts, size) = (asked.moments.counts, asked.moments.size);
         let draws: Vec<Statistics> = (0..options.draws as u64)
             .into_par_iter()
             .filter_map(|draw| {

@@ -5,8 +5,9 @@
 //! compared with the largest under each flip. Source: the sign-flip score tests of Hemerik, Goeman & Finos (2020).
 
 use super::asked::Asked;
+use super::moments::Both;
 use crate::random::Stream;
-use nalgebra::DVector;
+use nalgebra::Vector3;
 
 /// Up to this many runs, all sign patterns are tried.
 const ALL: usize = 12;
@@ -29,22 +30,25 @@ pub(crate) fn certificate(asked: &Asked, seed: u64) -> Vec<f64> {
 }
 
 /// Score of each run for an effect: its residual times the effect's shift, less what the model absorbs.
-fn scores(asked: &Asked, shift: &DVector<f64>) -> Vec<f64> {
-    let size = asked.moments.size();
-    let Some(inverse) = asked.moments.scatter.clone().cholesky() else { return vec![0.0; asked.runs.len()] };
+fn scores(asked: &Asked, shift: &Both) -> Vec<f64> {
+    let Some(inverse) = asked.moments.scatter.cholesky() else { return vec![0.0; asked.runs.len()] };
     let freedom = asked.moments.freedom();
     let factor = inverse.l();
-    let score = |(group, z): &(usize, DVector<f64>)| {
-        let whitened = factor.solve_lower_triangular(z).unwrap_or_else(|| DVector::zeros(size)) * freedom.sqrt();
-        shift.rows(group * size, size).dot(&whitened) / asked.moments.count(*group).sqrt()
+    let score = |(group, z): &(usize, Vector3<f64>)| {
+        let whitened = factor.solve_lower_triangular(z).unwrap_or_else(Vector3::zeros) * freedom.sqrt();
+        shift.fixed_rows::<3>(group * 3).dot(&whitened) / asked.moments.count(*group).sqrt()
     };
-    asked.runs.iter().map(score).collect()
+    of_unit_length(asked.runs.iter().map(score).collect())
+}
+
+/// Scores whose squares sum to 1, so that flips need no more than a sum; none are left as they are.
+fn of_unit_length(scores: Vec<f64>) -> Vec<f64> {
+    let length = scores.iter().map(|s| s * s).sum::<f64>().sqrt();
+    if length > 0.0 { scores.iter().map(|s| s / length).collect() } else { scores }
 }
 
 fn statistic(scores: &[f64], signs: &[f64]) -> f64 {
-    let sum: f64 = scores.iter().zip(signs).map(|(s, f)| s * f).sum();
-    let squares: f64 = scores.iter().map(|s| s * s).sum();
-    if squares > 0.0 { sum.abs() / squares.sqrt() } else { 0.0 }
+    scores.iter().zip(signs).map(|(s, f)| s * f).sum::<f64>().abs()
 }
 
 /// Patterns of signs, the observed one among them. The first run keeps its sign: only relative signs matter.
@@ -77,8 +81,9 @@ mod tests {
 
     #[test]
     fn equal_scores_are_as_striking_as_can_be() {
-        assert!((statistic(&[2.0; 9], &[1.0; 9]) - 3.0).abs() < 1e-12);
-        assert_eq!(statistic(&[0.0; 3], &[1.0; 3]), 0.0);
+        let statistic = |scores: &[f64]| statistic(&of_unit_length(scores.to_vec()), &vec![1.0; scores.len()]);
+        assert!((statistic(&[2.0; 9]) - 3.0).abs() < 1e-12);
+        assert_eq!(statistic(&[0.0; 3]), 0.0);
     }
 
     #[test]

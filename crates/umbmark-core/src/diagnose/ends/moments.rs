@@ -1,24 +1,34 @@
 //! Means and scatter of residuals: the tests use nothing else.
+//!
+//! A return pose has at most three coordinates, and thousands of null tests are drawn for each robot: all matrices have three, on the stack.
+//! Coordinates beyond those that are tested have means of zero and a scatter of one beside no other, and change nothing.
 
 use crate::random::Stream;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Matrix3, SVector, Vector3};
+
+/// A shift of the means, clockwise and counter-clockwise.
+pub(crate) type Shift = [Vector3<f64>; 2];
+
+/// Both directions one below the other.
+pub(crate) type Both = SVector<f64, 6>;
 
 /// Sufficient statistics of residuals in both directions, in the mirrored frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Moments {
     /// Number of runs, clockwise and counter-clockwise.
     pub counts: [usize; 2],
-    pub means: [DVector<f64>; 2],
+    pub means: Shift,
     /// Σ (z - z̄)(z - z̄)ᵀ over both directions.
-    pub scatter: DMatrix<f64>,
+    pub scatter: Matrix3<f64>,
+    /// Number of coordinates that are tested.
+    pub size: usize,
 }
 
 impl Moments {
-    /// Of residuals with their group, 0 for clockwise and 1 for counter-clockwise.
-    pub fn of(runs: &[(usize, DVector<f64>)]) -> Moments {
-        let size = runs.first().map_or(0, |(_, z)| z.len());
+    /// Of residuals of `size` coordinates with their group, 0 for clockwise and 1 for counter-clockwise.
+    pub fn of(runs: &[(usize, Vector3<f64>)], size: usize) -> Moments {
         let mut counts = [0; 2];
-        let mut means = [DVector::zeros(size), DVector::zeros(size)];
+        let mut means = [Vector3::zeros(); 2];
         for (group, z) in runs {
             counts[*group] += 1;
             means[*group] += z;
@@ -26,12 +36,12 @@ impl Moments {
         for (mean, count) in means.iter_mut().zip(counts) {
             *mean /= f64::from(count.max(1) as u32);
         }
-        let mut scatter = DMatrix::zeros(size, size);
+        let mut scatter = Matrix3::zeros();
         for (group, z) in runs {
-            let from_mean = z - &means[*group];
-            scatter.ger(1.0, &from_mean, &from_mean, 1.0);
+            let from_mean = z - means[*group];
+            scatter += from_mean * from_mean.transpose();
         }
-        Moments { counts, means, scatter }
+        Moments { counts, means, scatter: alone(scatter, size), size }
     }
 
     /// Moments of as many simulated runs without any effect, where the observed ones have scatter ν I.
@@ -40,23 +50,24 @@ impl Moments {
     /// not depend on the covariance; other tests would have too many false alarms if the estimate were used as the true covariance.
     pub fn draw(counts: [usize; 2], size: usize, stream: &mut Stream) -> Moments {
         let freedom = freedom_of(counts);
-        let precision = wishart(freedom, size, stream) / freedom as f64;
+        let precision = alone(wishart(freedom, size, stream) / freedom as f64, size);
         let root = precision.cholesky().and_then(|c| c.l().transpose().try_inverse());
-        let root = root.unwrap_or_else(|| DMatrix::identity(size, size));
-        let means = counts.map(|count| &root * normal(size, stream) / f64::from(count as u32).sqrt());
-        let scatter = &root * wishart(freedom, size, stream) * root.transpose();
-        Moments { counts, means, scatter }
+        let root = root.unwrap_or_else(Matrix3::identity);
+        Moments::about(counts, [Vector3::zeros(); 2], (&root, size), stream)
     }
 
     /// Moments of as many simulated runs whose covariance is known, `root` times its transpose, about these means.
-    pub fn about(counts: [usize; 2], means: [DVector<f64>; 2], root: &DMatrix<f64>, stream: &mut Stream) -> Moments {
-        let size = root.nrows();
-        let mut means = means;
+    pub fn about(
+        counts: [usize; 2],
+        mut means: Shift,
+        (root, size): (&Matrix3<f64>, usize),
+        stream: &mut Stream,
+    ) -> Moments {
         for (mean, count) in means.iter_mut().zip(counts) {
             *mean += root * normal(size, stream) / f64::from(count as u32).sqrt();
         }
         let scatter = root * wishart(freedom_of(counts), size, stream) * root.transpose();
-        Moments { counts, means, scatter }
+        Moments { counts, means, scatter: alone(scatter, size), size }
     }
 
     /// Degrees of freedom of the scatter.
@@ -64,15 +75,22 @@ impl Moments {
         freedom_of(self.counts) as f64
     }
 
-    /// Number of coordinates.
-    pub fn size(&self) -> usize {
-        self.scatter.nrows()
-    }
-
     /// n of a direction.
     pub fn count(&self, group: usize) -> f64 {
         f64::from(self.counts[group] as u32)
     }
+
+    /// Scatter about zero in place of the means.
+    pub fn about_zero(&self) -> Matrix3<f64> {
+        let of = |group: usize| self.means[group] * self.means[group].transpose() * self.count(group);
+        self.scatter + of(0) + of(1)
+    }
+}
+
+/// A matrix of the coordinates that are tested, the others beside it.
+fn alone(mut matrix: Matrix3<f64>, size: usize) -> Matrix3<f64> {
+    (size..3).for_each(|other| matrix[(other, other)] = 1.0);
+    matrix
 }
 
 /// Degrees of freedom of the scatter of so many runs about the means of their directions; 0 for a single run.
@@ -80,8 +98,10 @@ fn freedom_of(counts: [usize; 2]) -> usize {
     (counts[0] + counts[1]).saturating_sub(2)
 }
 
-fn normal(size: usize, stream: &mut Stream) -> DVector<f64> {
-    DVector::from_fn(size, |_, _| stream.normal())
+fn normal(size: usize, stream: &mut Stream) -> Vector3<f64> {
+    let mut z = Vector3::zeros();
+    z.iter_mut().take(size).for_each(|own| *own = stream.normal());
+    z
 }
 
 /// With more degrees of freedom than these, a matrix is drawn by its factor.
@@ -89,76 +109,69 @@ const DRAWN_ONE_BY_ONE: usize = 200;
 
 /// Σ z zᵀ over as many standard normal vectors as there are degrees of freedom; of many, by the factor of Bartlett (1933): normals below the
 /// diagonal, roots of χ² with ν, ν - 1, ... degrees of freedom on it.
-fn wishart(freedom: usize, size: usize, stream: &mut Stream) -> DMatrix<f64> {
-    if freedom > DRAWN_ONE_BY_ONE.max(size) {
-        let mut factor = DMatrix::zeros(size, size);
+fn wishart(freedom: usize, size: usize, stream: &mut Stream) -> Matrix3<f64> {
+    if freedom > DRAWN_ONE_BY_ONE {
+        let mut factor = Matrix3::zeros();
         for row in 0..size {
             (0..row).for_each(|column| factor[(row, column)] = stream.normal());
             factor[(row, row)] = stream.chi_squared((freedom - row) as f64).sqrt();
         }
-        return &factor * factor.transpose();
+        return factor * factor.transpose();
     }
-    (0..freedom).fold(DMatrix::zeros(size, size), |mut sum, _| {
+    (0..freedom).fold(Matrix3::zeros(), |sum, _| {
         let z = normal(size, stream);
-        sum.ger(1.0, &z, &z, 1.0);
-        sum
+        sum + z * z.transpose()
     })
 }
 
 /// Least squares in units of the pooled scatter S = E/ν: means as one vector of unit variances, with a base projected out.
 pub(crate) struct Whitened {
-    inverse_factor: DMatrix<f64>,
+    inverse_factor: Matrix3<f64>,
     root_counts: [f64; 2],
     /// Orthonormal columns that span the base.
-    base: Option<DMatrix<f64>>,
+    base: Vec<Both>,
     /// The means.
-    pub means: DVector<f64>,
+    pub means: Both,
 }
 
 impl Whitened {
     /// `None` if the scatter has no inverse.
-    pub fn new(moments: &Moments, base: &[[DVector<f64>; 2]]) -> Option<Whitened> {
-        let factor = (&moments.scatter / moments.freedom()).cholesky()?.l();
-        let size = moments.size();
-        let inverse_factor = factor.solve_lower_triangular(&DMatrix::identity(size, size))?;
+    pub fn new(moments: &Moments, base: &[Shift]) -> Option<Whitened> {
+        let factor = (moments.scatter / moments.freedom()).cholesky()?.l();
+        let inverse_factor = factor.solve_lower_triangular(&Matrix3::identity())?;
         let root_counts = [moments.count(0).sqrt(), moments.count(1).sqrt()];
-        let mut whitened = Whitened { inverse_factor, root_counts, base: None, means: DVector::zeros(0) };
-        if !base.is_empty() {
-            let columns: Vec<DVector<f64>> = base.iter().map(|column| whitened.whole(column)).collect();
-            whitened.base = Some(span(&DMatrix::from_columns(&columns)));
+        let mut whitened = Whitened { inverse_factor, root_counts, base: Vec::new(), means: Both::zeros() };
+        for shift in base {
+            let column = whitened.whole(shift);
+            // Once more, so that rounding leaves nothing of the others.
+            let left = whitened.beside(&whitened.beside(&column));
+            if left.norm() > DEPENDENT * column.norm() {
+                whitened.base.push(left.normalize());
+            }
         }
         whitened.means = whitened.column(&moments.means);
         Some(whitened)
     }
 
-    /// A pattern of both directions, whitened.
-    fn whole(&self, pattern: &[DVector<f64>; 2]) -> DVector<f64> {
-        let size = self.inverse_factor.nrows();
-        let mut column = DVector::zeros(2 * size);
-        for (group, (shift, root)) in pattern.iter().zip(self.root_counts).enumerate() {
-            column.rows_mut(group * size, size).copy_from(&(&self.inverse_factor * shift * root));
-        }
-        column
+    /// A shift of both directions, whitened.
+    fn whole(&self, shift: &Shift) -> Both {
+        let [cw, ccw] = [0, 1].map(|group| self.inverse_factor * shift[group] * self.root_counts[group]);
+        Both::new(cw.x, cw.y, cw.z, ccw.x, ccw.y, ccw.z)
     }
 
-    /// A pattern of both directions, whitened, with the base projected out.
-    pub fn column(&self, pattern: &[DVector<f64>; 2]) -> DVector<f64> {
-        let column = self.whole(pattern);
-        match &self.base {
-            Some(base) => &column - base * (base.transpose() * &column),
-            None => column,
-        }
+    /// A whitened shift with the base projected out.
+    fn beside(&self, column: &Both) -> Both {
+        self.base.iter().fold(*column, |left, own| left - own * own.dot(&left))
+    }
+
+    /// A shift of both directions, whitened, with the base projected out.
+    pub fn column(&self, shift: &Shift) -> Both {
+        self.beside(&self.whole(shift))
     }
 }
 
-/// Orthonormal columns with the span of `columns`; directions of rounding are left out.
-fn span(columns: &DMatrix<f64>) -> DMatrix<f64> {
-    let svd = columns.clone().svd(true, false);
-    let limit = 1e-9 * svd.singular_values.max();
-    let Some(u) = svd.u else { return DMatrix::zeros(columns.nrows(), 0) };
-    let kept: Vec<_> = (0..u.ncols()).filter(|i| svd.singular_values[*i] > limit).map(|i| u.column(i)).collect();
-    if kept.is_empty() { DMatrix::zeros(columns.nrows(), 0) } else { DMatrix::from_columns(&kept) }
-}
+/// A column of the base of which the others leave less than this share is one of them.
+const DEPENDENT: f64 = 1e-9;
 
 #[cfg(test)]
 mod tests {
@@ -170,7 +183,7 @@ mod tests {
         for freedom in [DRAWN_ONE_BY_ONE, DRAWN_ONE_BY_ONE + 1] {
             let mut stream = Stream::new(3, 0, 0);
             let (n, nu) = (2000.0, freedom as f64);
-            let draws: Vec<DMatrix<f64>> = (0..2000).map(|_| wishart(freedom, 3, &mut stream)).collect();
+            let draws: Vec<Matrix3<f64>> = (0..2000).map(|_| wishart(freedom, 3, &mut stream)).collect();
             for (row, column) in [(0, 0), (1, 1), (2, 2), (1, 0), (2, 0), (2, 1)] {
                 let values: Vec<f64> = draws.iter().map(|draw| draw[(row, column)]).collect();
                 let mean = values.iter().sum::<f64>() / n;

@@ -162,12 +162,15 @@ impl Leg {
 pub(super) fn todays(ends: &Ends) -> Design {
     let tracks = ends.tracks(true);
     let numbers: Vec<usize> = (0..tracks.len()).collect();
-    let used: Vec<usize> = ends.of_runs(&numbers).map(|(_, i)| *i).collect();
-    let leg = |(number, track): (usize, &&Track)| Leg {
-        track: (*track).clone(),
-        runs: used.iter().filter(|i| **i == number).count(),
-        turned: 0.0,
-        minutes: 0.0,
+    let used: Vec<(Direction, usize)> = ends.of_runs(&numbers).map(|(direction, track)| (direction, *track)).collect();
+    let leg = |(number, track): (usize, &&Track)| {
+        let own = || used.iter().filter(|(_, track)| *track == number);
+        let planned = ends.path.as_ref().filter(|_| !ends.is_recorded()).zip(own().next());
+        let track = planned.map_or_else(
+            || (*track).clone(),
+            |(path, (direction, _))| Track::planned(path, *direction, &ends.robot, false),
+        );
+        Leg { track, runs: own().count(), turned: 0.0, minutes: 0.0 }
     };
     Design { what: "the data".into(), legs: tracks.iter().enumerate().map(leg).collect() }
 }
@@ -221,7 +224,7 @@ fn plain(what: &str, path: Option<Path>, robot: &Robot, runs: usize, both: bool)
     let path = path.filter(|path| path.suits(robot))?;
     let directions: &[Direction] = if both { &Direction::BOTH } else { &[Direction::Ccw] };
     let leg = |d: &Direction| Leg {
-        track: Track::in_pieces(&path, *d, robot),
+        track: Track::planned(&path, *d, robot, false),
         runs,
         turned: 0.0,
         minutes: MINUTES_A_RUN + minutes(&path, robot),
@@ -232,7 +235,7 @@ fn plain(what: &str, path: Option<Path>, robot: &Robot, runs: usize, both: bool)
 /// The same path again, three runs each way, with poses taped at the stops or START turned in the room.
 fn again(path: &Path, robot: &Robot, how: &str, stops: bool, turned: f64) -> Option<Design> {
     let leg = |d: Direction| {
-        let track = if stops { Track::with_stops(path, d, robot) } else { Track::in_pieces(path, d, robot) };
+        let track = Track::planned(path, d, robot, stops);
         let taped = MINUTES_A_STOP * (track.sights().len() - 1) as f64;
         Leg { track, runs: 3, turned, minutes: MINUTES_A_RUN + taped + minutes(path, robot) }
     };

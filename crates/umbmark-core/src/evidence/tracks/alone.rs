@@ -167,16 +167,26 @@ impl Alone {
 
     /// AICc, BIC and the root mean square of the whitened residuals, the effects of the reference fitted out.
     pub fn criteria(&self) -> (f64, f64, f64) {
+        let (deviance, squares) = self.deviance_and_squares();
+        let (n, k) = (self.system.rows as f64, (self.system.residual() + Noise::SIZES) as f64);
+        let aicc = deviance + 2.0 * k * n / (n - k - 1.0).max(1.0);
+        (aicc, deviance + k * libm::log(n), (squares / n).sqrt())
+    }
+
+    /// Minus twice the logarithm of the likelihood, but for a constant, the effects of the reference fitted out.
+    pub fn deviance(&self) -> f64 {
+        self.deviance_and_squares().0
+    }
+
+    /// The deviance, and the squares of the whitened residuals in it.
+    fn deviance_and_squares(&self) -> (f64, f64) {
         let residual = self.system.residual();
         let runs = self.fitted.observed.runs.par_iter().zip(&self.columns);
         let scales = runs.map(|(run, columns)| self.fitted.noise.whiten(run, &[&columns[residual]]).log_scale);
         let scales: Vec<f64> = scales.collect();
         let reference: Vec<usize> = (self.fitted.free.len()..residual).collect();
         let squares = Projected::new(&self.system.whole, &reference).products[(residual, residual)];
-        let deviance = 2.0 * scales.iter().sum::<f64>() + squares;
-        let (n, k) = (self.system.rows as f64, (residual + Noise::SIZES) as f64);
-        let aicc = deviance + 2.0 * k * n / (n - k - 1.0).max(1.0);
-        (aicc, deviance + k * libm::log(n), (squares / n).sqrt())
+        (2.0 * scales.iter().sum::<f64>() + squares, squares)
     }
 }
 
