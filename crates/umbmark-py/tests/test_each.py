@@ -134,6 +134,37 @@ def test_progress_counts_robots(robots: dict[str, umbmark.Dataset]) -> None:
     assert heard == [(1, 3), (2, 3), (3, 3)]
 
 
+def test_many_robots_are_asked_in_parts_and_come_in_their_order_one_of_them_refused() -> None:
+    cw, ccw = np.random.default_rng(4).normal(size=(2, 150, 3, 3)) * [0.01, 0.01, 0.001]
+    fleet: dict[str, Any] = dict(umbmark.fleet(cw, ccw, path=PATH))
+    fleet["75"] = "there is no such place"
+    asked: list[int] = []
+    found = umbmark.each(umbmark.score, fleet, workers=2, progress=lambda at, _: asked.append(at))
+    assert asked == [*range(1, 151)]
+    assert [*found.failed] == ["75"]
+    assert [*found] == [name for name in fleet if name != "75"]
+    assert found["149"] == umbmark.score(fleet["149"])
+
+
+FORKED = """
+import os, signal, umbmark
+data = umbmark.Dataset.from_arrays([[0.1, 0, 0], [0.2, 0, 0]], [[0, 0.1, 0], [0, 0.2, 0]])
+before = umbmark.score(data)
+child = os.fork()
+if child == 0:
+    signal.alarm(60)
+    os._exit(0 if umbmark.score(data) == before else 1)
+print(os.waitpid(child, 0)[1], umbmark.score(data) == before)
+"""
+
+
+def test_a_forked_process_has_threads_of_its_own() -> None:
+    told = subprocess.run(
+        [sys.executable, "-c", FORKED], capture_output=True, text=True, check=True, timeout=120
+    )
+    assert told.stdout.split() == ["0", "True"]
+
+
 def test_what_was_found_compares_by_value(robots: dict[str, umbmark.Dataset]) -> None:
     found = umbmark.each(umbmark.score, robots)
     assert found == umbmark.each(umbmark.score, robots)

@@ -196,7 +196,7 @@ impl Asked {
     /// How alike the effects look, each size at its usual value.
     pub fn likeness(&self) -> Likeness {
         let names: Vec<&'static str> = self.units.iter().map(|unit| unit.effect.about.name).collect();
-        let shift = |i: usize| &self.units[i].shift * self.units[i].parameter.typical;
+        let shift = |i: usize| self.units[i].shift * self.units[i].parameter.typical;
         Likeness::new(&names, &DMatrix::from_fn(names.len(), names.len(), |i, j| shift(i).dot(&shift(j))))
     }
 
