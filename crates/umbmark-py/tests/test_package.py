@@ -88,7 +88,7 @@ def test_another_thread_runs_while_scores_are_computed() -> None:
 
 
 def test_the_import_brings_nothing_heavy_along() -> None:
-    heavy = ("matplotlib", "pandas", "polars", "distributed", "tqdm", "scipy")
+    heavy = ("numpy", "msgspec", "matplotlib", "pandas", "polars", "distributed", "tqdm", "scipy")
     code = f"import sys, umbmark; print([name for name in {heavy} if name in sys.modules])"
     run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
     assert run.stdout == "[]\n"
@@ -110,4 +110,4 @@ def test_the_import_costs_little_beside_that_of_numpy() -> None:
     both = np.array([run.stdout.split() for run in told], float)
     numpys, ours = both.min(axis=0)
     print(f"NumPy {1e3 * numpys:.0f} ms, umbmark {1e3 * ours:.0f} ms more")
-    assert ours < 1.2 * numpys
+    assert ours < 0.7 * numpys

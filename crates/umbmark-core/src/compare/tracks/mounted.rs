@@ -69,27 +69,29 @@ mod tests {
     use crate::drive::Robot;
     use crate::likelihood::watched::watched;
 
-    /// What is found of a model that knows E_b alone, of a robot with one more effect.
-    fn found(effect: (&'static str, &'static str, f64)) -> Option<Mounted> {
+    /// What is found of a model that knows the ratios alone, of a robot with one more effect.
+    fn found(effect: (&'static str, &'static str, f64)) -> (Option<Mounted>, Model) {
         let noise = ["position_sd_m", "heading_sd_rad"].map(|parameter| ("reference_noise", parameter, 1e-3));
-        let wheels = ("wheel_noise", "k_sqrt_m", 1e-3);
-        let data = watched(&robot_with(&[noise[0], noise[1], wheels, ("wheelbase", "e_b", 1.01), effect]), 4, 4);
-        let observed = Observed::new(&data, &Robot::labmate()).unwrap();
+        let truth = robot_with(&[noise[0], noise[1], ("wheel_noise", "k_sqrt_m", 1e-3), effect]);
+        let observed = Observed::new(&watched(&truth, 4, 4), &Robot::labmate()).unwrap();
         let mut model = Model::new(&Robot::labmate());
-        model.set("wheelbase", "e_b", 1.01).unwrap();
-        mounted(&observed, &model, &Noise::default(), &Options::default()).unwrap()
+        for (effect, ratio) in [("wheel_diameter_ratio", "e_d"), ("wheelbase", "e_b")] {
+            model.set(effect, ratio, truth.get(effect, ratio).unwrap()).unwrap();
+        }
+        (mounted(&observed, &model, &Noise::default(), &Options::default()).unwrap(), model)
     }
 
     #[test]
     fn a_marker_aside_is_found_with_its_place_beside_the_values_of_the_model() {
-        let Mounted { model, words } = found(("marker_offset", "left_m", 4e-3)).unwrap();
+        let (found, own) = found(("marker_offset", "left_m", 4e-3));
+        let Mounted { model, words } = found.unwrap();
         assert!((model.get("marker_offset", "left_m").unwrap() - 4e-3).abs() < 5e-4, "{model:?}");
-        assert_eq!((model.get("wheelbase", "e_b"), model.is_free()), (Some(1.01), false));
+        assert_eq!((model.get("wheelbase", "e_b"), model.is_free()), (own.get("wheelbase", "e_b"), false));
         assert!(words.contains("to the left of the middle of the axle"), "{words}");
     }
 
     #[test]
     fn a_marker_in_its_place_explains_nothing() {
-        assert!(found(("reference_noise", "position_sd_m", 1e-3)).is_none());
+        assert!(found(("reference_noise", "position_sd_m", 1e-3)).0.is_none());
     }
 }
