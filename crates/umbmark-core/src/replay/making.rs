@@ -78,8 +78,8 @@ impl Track {
         Track::along_path(path, direction, robot, |pieces| pieces, Observed::AtEnd)
     }
 
-    /// [`Track::in_pieces`] for a plan, in pieces of five centimetres, observed after every move or at the end: what it is worth is told in
-    /// standard deviations, to some per cent.
+    /// [`Track::in_pieces`] for a plan, in pieces five times as long, observed after every move or at the end: its worth in standard deviations
+    /// need only be right to some per cent.
     pub fn planned(path: &Path, direction: Direction, robot: &Robot, at_stops: bool) -> Track {
         let observed = if at_stops { Observed::AtStops } else { Observed::AtEnd };
         Track::along_path(path, direction, robot, |pieces| pieces.coarser(5), observed)
