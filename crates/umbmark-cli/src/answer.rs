@@ -18,6 +18,8 @@ pub fn answer_text(solution: &Solution, level: f64) -> String {
             );
         }
     }
+    let confounding = solution.learnt.diagnosis.confounding().filter(|_| !solution.changes.is_empty());
+    text += &confounding.map_or_else(String::new, |told| hanging("", 0, &told));
     if solution.assumes_scale() {
         text += &hanging("", 0, "These hold if the mean wheel diameter is right: the runs do not show it.");
     }

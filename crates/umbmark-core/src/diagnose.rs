@@ -6,6 +6,7 @@
 
 mod candidates;
 pub mod classes;
+mod confounder;
 mod diagnosis;
 pub(crate) mod ends;
 pub(crate) mod experiments;
@@ -24,6 +25,7 @@ use crate::effect::{Model, ModelError, find};
 use crate::evidence::{AnyEvidence, Ends, FitError, Level, robot_of};
 
 pub use candidates::{Candidate, Size, candidates, columns};
+pub use confounder::{Bias, Confounder};
 pub use diagnosis::{Diagnosis, GoodnessOfFit, Verdict};
 pub use ends::{Contrast, OnCircle};
 pub use experiments::Experiment;

@@ -253,7 +253,12 @@ impl Assembly {
         Ok(Dataset { robot, path, reference_frame, columns, runs, sessions, conditions, clocks, topics, warnings })
     }
 
-    fn push(&mut self, run: Run, file: &str, line: usize) -> Result<(), DatasetError> {
+    fn push(&mut self, mut run: Run, file: &str, line: usize) -> Result<(), DatasetError> {
+        if let Some(log) = &mut run.log {
+            // They grew as rows were read, to up to twice their size.
+            [&mut log.time, &mut log.left, &mut log.right].into_iter().for_each(Vec::shrink_to_fit);
+            log.reference.shrink_to_fit();
+        }
         let key = (run.test, run.direction, run.number);
         if let Some(&first) = self.index.get(&key) {
             return Err(At::new(file, line).refuse(LineProblem::DuplicateRun {

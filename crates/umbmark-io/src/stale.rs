@@ -16,13 +16,19 @@ pub(super) fn drop_stale(file: &str, log: &mut TickLog, robot: &Robot, warnings:
         return;
     }
     let poses = computed_poses(log, robot);
-    let mut kept: Vec<ReferencePose> = Vec::with_capacity(log.reference.len());
+    let mut repeated: Vec<usize> = Vec::new();
+    let mut first = 0;
     for same in log.reference.chunk_by(|a, b| repeats(&[*a, *b])) {
-        let stale = same.len() > 1 && moved(&poses, &same[0], &same[same.len() - 1]);
-        kept.extend_from_slice(if stale { &same[..1] } else { same });
+        if same.len() > 1 && moved(&poses, &same[0], &same[same.len() - 1]) {
+            repeated.extend(first + 1..first + same.len());
+        }
+        first += same.len();
     }
-    let stale = log.reference.len() - kept.len();
-    log.reference = kept;
+    let (stale, mut place, mut next) = (repeated.len(), 0, repeated.into_iter().peekable());
+    log.reference.retain(|_| {
+        place += 1;
+        next.next_if_eq(&(place - 1)).is_none()
+    });
     log.mended.stale = stale;
     if stale > 0 {
         warnings.push(format!(

@@ -1,6 +1,6 @@
 //! Python bindings: the extension module `umbmark._umbmark`, which the package `umbmark` makes comfortable.
 //!
-//! One file for each room of `umbmark-core` that Python sees, and two for `umbmark-plot`. Robots, paths, models and datasets are frozen classes here.
+//! One file for each room of `umbmark-core` that Python sees, two for `umbmark-plot`, and one for `umbmark-web`. Robots, paths, models and datasets are frozen classes here.
 //! Results cross as the documents that `--json` prints ([`umbmark_core::result`]); the package decodes them into typed
 //! classes. Every call has three steps: arguments are read under the interpreter lock, the work runs without it (`work`),
 //! and its result is handed over.
@@ -67,6 +67,7 @@ module! {
     tracks: tracks;
     watch: watch;
     work;
+    workbench: Server, serve;
 }
 
 /// How Python names its arguments in messages.

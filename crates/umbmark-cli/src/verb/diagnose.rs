@@ -229,7 +229,7 @@ fn sizes_text(diagnosis: &Diagnosis) -> String {
             text += &hanging(&format!("  {}", effect[0].effect), 34, &own.join(", "));
         }
     }
-    text
+    text + &diagnosis.confounding().map_or_else(String::new, |told| format!("\n{}", hanging("", 0, &told)))
 }
 
 /// What these runs cannot show.

@@ -1,5 +1,6 @@
 //! What a diagnosis found.
 
+use super::confounder::{Confounder, sentence};
 use super::ends::contrasts::{Contrast, OnCircle};
 use super::experiments::Experiment;
 use super::identifiability::Identifiability;
@@ -85,6 +86,8 @@ pub struct Diagnosis {
     pub likeness: Likeness,
     /// Minimum detectable sizes.
     pub minimum_detectable: Vec<Detectable>,
+    /// Effects that would not show and would bias the first numbers of the model, the worst first; from tracks only.
+    pub confounders: Vec<Confounder>,
     /// What to measure next, the most informative per minute first.
     pub next_experiments: Vec<Experiment>,
     /// Closure contrasts of a square driven both ways, after the fit.
@@ -126,6 +129,7 @@ impl Diagnosis {
             invisible: Vec::new(),
             likeness: Likeness::default(),
             minimum_detectable: Vec::new(),
+            confounders: Vec::new(),
             next_experiments: Vec::new(),
             contrasts: Vec::new(),
             circle: Vec::new(),
@@ -174,6 +178,12 @@ impl Diagnosis {
             }
         }
         parts
+    }
+
+    /// What effects that these runs do not show would do to the first numbers of the model, in words; `None` where no such effect moves one beyond
+    /// its interval.
+    pub fn confounding(&self) -> Option<String> {
+        sentence(&self.confounders)
     }
 
     /// The effects that at their usual size stay below the noise.

@@ -9,7 +9,7 @@
 //! | class | `class` | which effects look the same in these runs |
 //! | search | `search`, `missing`, `growth`, `needless`, `lags`, `repeats` | adds what is certified to the model, and tests again |
 //! | doubt | `doubts`, `chance`, `odd`, `unequal`, `varying`, `wander`, `unconfirmed` | what speaks against the model: what repeats, runs and numbers that differ, headings that wander |
-//! | words | `conclusion`, `left`, `dependence`, `curve`, `suggestion`, `experiments` | the verdict, what the error depends on, and what to drive next |
+//! | words | `conclusion`, `left`, `confounders`, `dependence`, `curve`, `suggestion`, `experiments` | the verdict, what the error depends on, and what to drive next |
 //!
 //! An effect is certified as missing where three things hold: its F is significant (Bonferroni-corrected), by the noise model and
 //! by the scatter between runs; its score is significant under sign flips of whole runs, which need no noise model; and held-out
@@ -21,6 +21,7 @@
 mod chance;
 mod class;
 mod conclusion;
+mod confounders;
 mod curve;
 pub(super) mod dependence;
 mod doubts;
@@ -51,7 +52,7 @@ use super::options::Options;
 use super::suspect::Suspect;
 use crate::effect::{Entry, Model};
 use crate::evidence::FitError;
-use crate::evidence::tracks::{fit, fit_possible};
+use crate::evidence::tracks::{estimates, fit, fit_possible};
 use crate::likelihood::Observed;
 use crate::watch::Watch;
 
@@ -87,7 +88,9 @@ pub(crate) fn diagnose(observed: &Observed, model: &Model, options: &Options) ->
     let ranking = certified.iter().cloned().chain(asked).collect();
     // Visibility, tests and remaining error refer to the given model, before anything was added.
     let remains = if exams.len() > 1 { left::remains_of(&exams[0], options) } else { remains };
-    let diagnosis = of_model(exams.swap_remove(0), dependence, options)?;
+    let exam = exams.swap_remove(0);
+    let fitted = estimates(&exam.fitted);
+    let diagnosis = of_model(exam, dependence, fitted, options)?;
     let mut next_experiments = [experiments, diagnosis.next_experiments].concat();
     next_experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     let is_doubted = verdict == Verdict::Explained && !reasons.is_empty();

@@ -230,8 +230,9 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         )
     }));
     reasons.extend(against.filter(|_| mounted.is_none()));
-    let (noise, conditions) = (written.observed.setup.noise.position, crossed(&written));
-    reasons.extend(misfits(&steps, runs, noise, is_nominal(&last.fitted)));
+    let alone = Alone::new(written.clone());
+    let (noise, conditions) = (written.observed.setup.noise.position, crossed(&alone));
+    reasons.extend(misfits(&steps, runs, noise, is_nominal(&last.fitted), alone.is_told_without_any_fold()));
     reasons.extend(elsewhere(&steps, &conditions, runs, noise));
     let verdict = match (&left.smooth, more) {
         _ if verdict == Verdict::NotEnoughData => verdict,
@@ -241,7 +242,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         (None, false) if has_law => Verdict::UnlistedEffect,
         (None, false) => Verdict::Explained,
     };
-    let diagnosis = tracks::of_model(last, dependence, options)?;
+    let diagnosis = tracks::of_model(last, dependence, estimates(&written), options)?;
     hints.extend(tracks::uncertified(&left.asked, &reasons, options));
     let mut remarks = [diagnosis.remarks.clone(), hints].concat();
     let ranking = left.asked;
@@ -259,15 +260,14 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         remarks.push(USUAL_NOISE.to_owned());
     }
     experiments.extend(diagnosis.next_experiments);
-    let (model, fitted) = (written.model.clone(), estimates(&written));
-    remarks.extend(kept(&model, &fitted));
+    let model = written.model.clone();
+    remarks.extend(kept(&model, &diagnosis.fitted));
     let diagnosis = Diagnosis {
         verdict,
         ranking,
         reasons,
         repeats,
         remains: Some(remains),
-        fitted,
         model: model.clone(),
         next_experiments: experiments,
         ..diagnosis
@@ -276,9 +276,8 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
 }
 
 /// The conditions of the runs, and what of a model is told under one of their levels alone.
-fn crossed(written: &Fitted) -> Vec<Crossed> {
-    let alone = Alone::new(written.clone());
-    let conditions = written.observed.conditions.iter();
+fn crossed(alone: &Alone) -> Vec<Crossed> {
+    let conditions = alone.fitted().observed.conditions.iter();
     conditions.map(|levels| Crossed::new(levels, alone.elsewhere(levels).only)).collect()
 }
 

@@ -89,6 +89,45 @@ pub struct DetectableSize {
     pub size: Option<f64>,
 }
 
+/// An effect that these runs would not show, and that would bias what is fitted.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Confounder {
+    /// The effect.
+    pub effect: &'static str,
+    /// The parameter that has the size.
+    pub parameter: &'static str,
+    /// The size, in the unit of the parameter: the usual one, or the minimum detectable one where that is smaller.
+    pub size: f64,
+    /// The fitted numbers that it would move out of their intervals, by more than a tenth of their usual size.
+    pub biases: Vec<Bias>,
+}
+
+/// By how much an effect that is left out biases a fitted number.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Bias {
+    /// The effect that the number belongs to.
+    pub effect: &'static str,
+    /// The number.
+    pub parameter: &'static str,
+    /// The bias, without its sign, in the unit of the number.
+    pub bias: f64,
+    /// Half the width of the number's interval, in the same unit.
+    pub half_width: f64,
+}
+
+impl From<&diagnose::Confounder> for Confounder {
+    fn from(own: &diagnose::Confounder) -> Confounder {
+        let of = |b: &diagnose::Bias| Bias {
+            effect: b.effect,
+            parameter: b.parameter,
+            bias: b.bias,
+            half_width: b.half_width,
+        };
+        let biases = own.biases.iter().map(of).collect();
+        Confounder { effect: own.effect, parameter: own.parameter, size: own.size, biases }
+    }
+}
+
 /// A further experiment that separates two effects.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Experiment {
@@ -270,6 +309,8 @@ pub struct Diagnosis {
     pub minimum_detectable: Keyed<Option<f64>>,
     /// The same for each parameter.
     pub minimum_detectable_sizes: Vec<DetectableSize>,
+    /// Effects that these runs would not show and that would bias the first numbers of the model, the worst first.
+    pub confounders: Vec<Confounder>,
     /// What to measure next, the most informative per minute first.
     pub next_experiments: Vec<Experiment>,
     /// What this experiment determines of the model.
@@ -319,6 +360,7 @@ impl Diagnosis {
             absorbed: diagnosis.invisible.iter().filter_map(absorbed).collect(),
             minimum_detectable: largest(&diagnosis.minimum_detectable),
             minimum_detectable_sizes: diagnosis.minimum_detectable.iter().map(size).collect(),
+            confounders: diagnosis.confounders.iter().map(Confounder::from).collect(),
             next_experiments: experiments(&diagnosis.next_experiments),
             identifiability: (&diagnosis.identifiability).into(),
             unlisted: diagnosis.dependence.as_ref().map(Unlisted::from),

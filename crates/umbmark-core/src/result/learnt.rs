@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::diagnosis::{Experiment, Unlisted, experiments};
+use super::diagnosis::{Confounder, Experiment, Unlisted, experiments};
 use super::fitted::{Estimate, estimates};
 use super::law::Repeated;
 use super::solution::{Changes, changes};
@@ -101,6 +101,8 @@ pub struct Learnt {
     pub verdict: &'static str,
     /// A missing effect that is not in the catalogue; null if there is none.
     pub unlisted: Option<Unlisted>,
+    /// Effects that these runs would not show and that would bias the first numbers of the model, the worst first.
+    pub confounders: Vec<Confounder>,
     /// What to measure next, the most informative per minute first.
     pub next_experiments: Vec<Experiment>,
     /// The model that was learnt.
@@ -146,6 +148,7 @@ impl Learnt {
             steps: learnt.steps.iter().map(Step::from).collect(),
             verdict: learnt.verdict.name(),
             unlisted: diagnosis.dependence.as_ref().map(Unlisted::from),
+            confounders: diagnosis.confounders.iter().map(Confounder::from).collect(),
             next_experiments: experiments(&diagnosis.next_experiments),
             model: Model::with_noise(&learnt.model, learnt.noise.as_ref()),
             fitted: estimates(&diagnosis.fitted, 1.0 - options.size),

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::diagnosis::Confounder;
 use super::fitted::{Estimate, estimates, meaning};
 use super::{Keyed, Leaves, Model, Setup, finite, reasons};
 use crate::diagnose::Options;
@@ -93,6 +94,8 @@ pub struct Solution {
     pub next: Vec<String>,
     /// What these runs do not show of the robot: effects that become numbers of it.
     pub not_shown: Vec<&'static str>,
+    /// Effects that these runs would not show and that would bias the first numbers of the model, the worst first.
+    pub confounders: Vec<Confounder>,
     /// Why the verdict is not "explained", a sentence each.
     pub reasons: Vec<String>,
     /// The model that was learnt.
@@ -135,6 +138,7 @@ impl Solution {
             off: solution.off.as_ref().map(Off::from),
             next: solution.next(),
             not_shown: solution.not_shown.clone(),
+            confounders: diagnosis.confounders.iter().map(Confounder::from).collect(),
             reasons: reasons(&diagnosis.reasons),
             model: Model::with_noise(&learnt.model, learnt.noise.as_ref()),
             fitted: estimates(&diagnosis.fitted, 1.0 - options.size),

@@ -1,6 +1,6 @@
 //! The cheapest way through the poses of a run (Viterbi 1967): which poses are kept, and where the track jumps.
 
-use super::edges::{Edge, JUMP, Sighting, Spread};
+use super::edges::{Edge, JUMP, LARGE, Sighting, Spread};
 
 /// Costs, in half squares of standard deviations: of a jump, of the first skipped pose, and of each further one.
 const COSTS: [f64; 3] = [0.5 * JUMP * JUMP, 32.0, 10.0];
@@ -20,7 +20,8 @@ impl Way {
             (0..run.len()).map(|k| k > 0 && spread.deviations(&run[k - 1], &run[k]) > QUIET).collect();
         let passed = |count: usize| if count == 0 { 0.0 } else { COSTS[1] + COSTS[2] * (count - 1) as f64 };
         let mut cost = vec![f64::INFINITY; run.len()];
-        let mut before = vec![usize::MAX; run.len()];
+        // How many poses back the way comes from; 0 where it begins.
+        let mut back = vec![0u8; run.len()];
         for to in 0..run.len() {
             if to <= LONGEST {
                 cost[to] = passed(to);
@@ -33,7 +34,7 @@ impl Way {
                 let deviations = spread.deviations(&run[from], &run[to]);
                 let own = cost[from] + passed(to - from - 1) + (0.5 * deviations * deviations).min(COSTS[0]);
                 if own < cost[to] {
-                    (cost[to], before[to]) = (own, from);
+                    (cost[to], back[to]) = (own, (to - from) as u8);
                 }
             }
         }
@@ -43,12 +44,14 @@ impl Way {
             of(a).total_cmp(&of(b))
         });
         let mut kept: Vec<usize> =
-            std::iter::successors(last, |at| Some(before[*at]).filter(|b| *b != usize::MAX)).collect();
+            std::iter::successors(last, |at| Some(*at - usize::from(back[*at])).filter(|from| from != at)).collect();
         kept.reverse();
         Way { kept }
     }
 
-    pub fn steps(&self, run: &[Sighting], spread: &Spread) -> Vec<Edge> {
-        self.kept.windows(2).map(|pair| Edge::between(run, pair[0], pair[1], spread)).collect()
+    /// The steps of the way of more than [`LARGE`] standard deviations.
+    pub fn large_steps(&self, run: &[Sighting], spread: &Spread) -> Vec<Edge> {
+        let steps = self.kept.windows(2).map(|pair| Edge::between(run, pair[0], pair[1], spread));
+        steps.filter(|step| step.deviations > LARGE).collect()
     }
 }

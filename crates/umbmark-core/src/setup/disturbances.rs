@@ -6,7 +6,7 @@
 //! searched afterwards (`stretches`). The standard deviations come from medians over all runs, which wild poses do not change.
 
 use super::cheapest::{LONGEST, Way};
-use super::edges::{Edge, JUMP, LARGE, Sighting, Spread, difference};
+use super::edges::{Edge, JUMP, Sighting, Spread, difference};
 use super::shared::Shared;
 use super::{PoseNoise, stretches};
 
@@ -51,10 +51,8 @@ pub(super) struct Leap {
 pub(super) fn search(runs: &[Vec<Sighting>], steps_only: bool, counted: [f64; 2]) -> (Vec<Found>, PoseNoise) {
     let (spread, noise) = Spread::of(runs, counted);
     let ways: Vec<Way> = runs.iter().map(|run| Way::cheapest(run, &spread)).collect();
-    let steps: Vec<Vec<Edge>> = runs.iter().zip(&ways).map(|(run, way)| way.steps(run, &spread)).collect();
-    let large = |(run, steps): (&Vec<Sighting>, &Vec<Edge>)| {
-        steps.iter().filter(|step| step.deviations > LARGE).map(|step| run[step.to].rolled).collect()
-    };
+    let steps: Vec<Vec<Edge>> = runs.iter().zip(&ways).map(|(run, way)| way.large_steps(run, &spread)).collect();
+    let large = |(run, steps): (&Vec<Sighting>, &Vec<Edge>)| steps.iter().map(|step| run[step.to].rolled).collect();
     let shared = Shared::new(runs, runs.iter().zip(&steps).map(large).collect());
     let left = |(index, run): (usize, &Vec<Sighting>)| {
         let is_shared = |step: &Edge| !steps_only && shared.stands_elsewhere(index, run[step.to].rolled);

@@ -10,6 +10,8 @@ pub(super) const JUMP: f64 = 10.0;
 pub(super) const LARGE: f64 = 4.0;
 /// The noise is estimated from edges over these numbers of poses.
 const OVER: [usize; 4] = [1, 2, 4, 8];
+/// About so many edges over each number of poses are enough for their medians.
+const ENOUGH: usize = 300_000;
 /// Poses are compared that are so many apart: enough for what a filter hides.
 const APART: usize = 8;
 /// The noise is estimated by the size of the motion, in this many parts of all edges.
@@ -67,9 +69,11 @@ impl Spread {
     /// the same.
     pub fn of(runs: &[Vec<Sighting>], counted: [f64; 2]) -> (Spread, PoseNoise) {
         let mut edges: Vec<(f64, f64, Option<f64>)> = Vec::new();
+        let is_taken = taken(runs.iter().map(Vec::len).sum());
         for run in runs {
             for over in OVER {
-                edges.extend(run.windows(over + 1).map(|poses| {
+                let windows = run.windows(over + 1).enumerate().filter(|(place, _)| is_taken(*place));
+                edges.extend(windows.map(|(_, poses)| {
                     let (from, to) = (&poses[0], &poses[over]);
                     let ([x, y], turned) = difference(from, to);
                     // The median of chi-squared with two degrees of freedom, and with one.
@@ -117,6 +121,15 @@ impl Spread {
     }
 }
 
+/// Which of so many edges are taken, by their place: all, or about [`ENOUGH`] of them, spread evenly by the golden ratio, so that no rhythm of a
+/// recorder hides the others.
+fn taken(all: usize) -> impl Fn(usize) -> bool {
+    const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+    let share = ENOUGH as f64 / all.max(1) as f64;
+    let below = if share >= 1.0 { u64::MAX } else { (share * u64::MAX as f64) as u64 };
+    move |place| (place as u64).wrapping_mul(GOLDEN) <= below
+}
+
 /// Standard deviation that rounding makes in the difference of two coordinates \[m\] and of two headings \[rad\]: a step over the root of 6
 /// if most poses repeat the number of the one before, else 0.
 fn rounded(runs: &[Vec<Sighting>]) -> [f64; 2] {
@@ -159,5 +172,25 @@ pub(super) struct Edge {
 impl Edge {
     pub fn between(run: &[Sighting], from: usize, to: usize, spread: &Spread) -> Edge {
         Edge { from, to, deviations: spread.deviations(&run[from], &run[to]) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_many_edges_enough_are_taken_evenly_and_in_every_rhythm_and_of_few_all() {
+        assert!((0..ENOUGH).all(taken(ENOUGH)));
+        for all in [ENOUGH + 1, 10 * ENOUGH, 24 * ENOUGH] {
+            let is_taken = taken(all);
+            for rhythm in [1, 2, 3, 5, 8, 10] {
+                for beat in 0..rhythm {
+                    let share = (beat..all).step_by(rhythm).filter(|place| is_taken(*place)).count();
+                    let expected = ENOUGH as f64 / rhythm as f64;
+                    assert!((share as f64 / expected - 1.0).abs() < 0.01, "{all} {rhythm} {beat}: {share}");
+                }
+            }
+        }
     }
 }

@@ -40,6 +40,7 @@ fn hidden(diagnosis: &Diagnosis) -> Vec<String> {
     if !below.is_empty() {
         sentences.push(format!("Smaller than the scatter of the runs at the usual size: {}.", below.join(", ")));
     }
+    sentences.extend(diagnosis.confounding());
     sentences
 }
 

@@ -58,6 +58,7 @@ from ._umbmark import (
 from ._unlisted import Unlisted
 from ._warnings import ConversionWarning, UmbmarkWarning
 from ._watch import Watched, watch
+from ._workbench import Workbench, open
 
 __all__ = [
     "ActsOn",
@@ -117,6 +118,7 @@ __all__ = [
     "UmbmarkWarning",
     "Unlisted",
     "Watched",
+    "Workbench",
     "__version__",
     "apply",
     "calibrate",
@@ -138,6 +140,7 @@ __all__ = [
     "load_dataset",
     "merge",
     "monte_carlo",
+    "open",
     "paper",
     "plan",
     "plot",

@@ -1095,6 +1095,9 @@ class Diagnosis(Result, frozen=True):
         Minimum detectable size of each effect.
     minimum_detectable_sizes : tuple[DetectableSize, ...]
         The same for each parameter.
+    confounders : tuple[Confounder, ...]
+        Effects that these runs would not show and that would bias the first numbers of the model,
+        the worst first.
     next_experiments : tuple[Experiment, ...]
         What to measure next, the most informative per minute first.
     identifiability : Identifiability
@@ -1151,6 +1154,7 @@ class Diagnosis(Result, frozen=True):
     absorbed: dict[str, tuple[str, ...]]
     minimum_detectable: dict[str, float | None]
     minimum_detectable_sizes: tuple[DetectableSize, ...]
+    confounders: tuple[Confounder, ...]
     next_experiments: tuple[Experiment, ...]
     identifiability: Identifiability
     unlisted: Unlisted | None
@@ -1252,6 +1256,50 @@ class DetectableSize(Record, frozen=True):
     effect: str
     parameter: str
     size: float | None
+
+
+class Confounder(Record, frozen=True):
+    """An effect that these runs would not show, and that would bias what is fitted.
+
+    Attributes
+    ----------
+    effect : str
+        The effect.
+    parameter : str
+        The parameter that has the size.
+    size : float
+        The size, in the unit of the parameter: the usual one, or the minimum detectable one where
+        that is smaller.
+    biases : tuple[Bias, ...]
+        The fitted numbers that it would move out of their intervals, by more than a tenth of their
+        usual size.
+    """
+
+    effect: str
+    parameter: str
+    size: float
+    biases: tuple[Bias, ...]
+
+
+class Bias(Record, frozen=True):
+    """By how much an effect that is left out biases a fitted number.
+
+    Attributes
+    ----------
+    effect : str
+        The effect that the number belongs to.
+    parameter : str
+        The number.
+    bias : float
+        The bias, without its sign, in the unit of the number.
+    half_width : float
+        Half the width of the number's interval, in the same unit.
+    """
+
+    effect: str
+    parameter: str
+    bias: float
+    half_width: float
 
 
 class Experiment(Record, frozen=True):
@@ -2299,6 +2347,9 @@ class Learnt(Result, frozen=True):
         Verdict of the last diagnosis; see ``Diagnosis``.
     unlisted : Unlisted or None
         A missing effect that is not in the catalogue; None if there is none.
+    confounders : tuple[Confounder, ...]
+        Effects that these runs would not show and that would bias the first numbers of the model,
+        the worst first.
     next_experiments : tuple[Experiment, ...]
         What to measure next, the most informative per minute first.
     model : Model
@@ -2354,6 +2405,7 @@ class Learnt(Result, frozen=True):
     steps: tuple[Step, ...]
     verdict: str
     unlisted: Unlisted | None
+    confounders: tuple[Confounder, ...]
     next_experiments: tuple[Experiment, ...]
     model: Model
     fitted: tuple[Estimate, ...]
@@ -3369,6 +3421,9 @@ class Solution(Result, frozen=True):
         What to do next, a sentence each.
     not_shown : tuple[str, ...]
         What these runs do not show of the robot: effects that become numbers of it.
+    confounders : tuple[Confounder, ...]
+        Effects that these runs would not show and that would bias the first numbers of the model,
+        the worst first.
     reasons : tuple[str, ...]
         Why the verdict is not "explained", a sentence each.
     model : Model
@@ -3410,6 +3465,7 @@ class Solution(Result, frozen=True):
     off: Off | None
     next: tuple[str, ...]
     not_shown: tuple[str, ...]
+    confounders: tuple[Confounder, ...]
     reasons: tuple[str, ...]
     model: Model
     fitted: tuple[Estimate, ...]

@@ -22,6 +22,7 @@ __all__ = [
     "Path",
     "Robot",
     "Run",
+    "Server",
     "Sobol",
     "Study",
     "UmbmarkError",
@@ -52,6 +53,7 @@ __all__ = [
     "score_dataset",
     "sensitivity",
     "separate",
+    "serve",
     "simulate",
     "solve",
     "survey",
@@ -1244,6 +1246,26 @@ def watch(
     threads: int,
 ) -> tuple[str, str]:
     """Whether a robot that is tested again and again changes."""
+
+@final
+class Server:
+    """A server that answers on a thread of its own until it is closed."""
+    @property
+    def address(self) -> str:
+        """The address of its page."""
+    def is_open(self) -> bool:
+        """Whether it still answers."""
+    def close(self) -> None:
+        """Ends it; a server that is closed stays closed."""
+
+def serve(
+    place: str | None,
+    drops: str,
+    port: int,
+    tests: tuple[float, int, int],
+    threads: int,
+) -> Server:
+    """Opens the dataset at a place, and serves it."""
 
 def apply(
     data: Dataset, model: Model, start: tuple[float, float, float]

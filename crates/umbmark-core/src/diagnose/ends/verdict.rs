@@ -40,6 +40,7 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
         certified: 0,
         invisible: Vec::new(),
         minimum_detectable: Vec::new(),
+        confounders: Vec::new(),
         next_experiments: Vec::new(),
         contrasts: contrasts(ends, &fitted, 1.0 - options.size),
         circle: circle(ends, &fitted, 1.0 - options.size),

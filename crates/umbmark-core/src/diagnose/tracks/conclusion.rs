@@ -1,5 +1,6 @@
 //! What was found, in words: the verdict, the reasons for doubt, what is hidden, and what to drive next.
 
+use super::confounders::confounders;
 use super::dependence::{Dependence, dependence};
 use super::examination::Examination;
 use super::left::{doubts_of, reason_to_doubt, remains_of};
@@ -22,8 +23,8 @@ use crate::diagnose::remains::Remains;
 use crate::diagnose::suspect::Suspect;
 use crate::diagnose::unseen::{Detectable, Unseen, Why};
 use crate::effect::find;
-use crate::evidence::tracks::{Projected, estimates};
-use crate::evidence::{FitError, Level, correlations};
+use crate::evidence::tracks::Projected;
+use crate::evidence::{Estimate, FitError, Level, correlations};
 use crate::stats::{chi_squared_upper_tail, normal_quantile};
 use nalgebra::DMatrix;
 use std::sync::Arc;
@@ -118,17 +119,19 @@ pub(crate) fn uncertified(asked: &[Suspect], reasons: &[Reason], options: &Optio
     ))
 }
 
-/// The diagnosis of the final model: what the data cannot show, and further remarks.
+/// The diagnosis of the final model, of which `fitted` is told: what the data cannot show, and further remarks.
 pub(crate) fn of_model(
     exam: Examination,
     dependence: Option<Dependence>,
+    fitted: Vec<Estimate>,
     options: &Options,
 ) -> Result<Diagnosis, FitError> {
     let (invisible, minimum_detectable) = visibility(&exam);
+    let confounders = confounders(&exam, &fitted, 1.0 - options.size);
     Ok(Diagnosis {
         level: Level::Tracks,
         verdict: Verdict::Explained,
-        fitted: estimates(&exam.fitted),
+        fitted,
         correlations: correlations(exam.fitted.covariance.as_ref()),
         likeness: likeness(&exam),
         goodness_of_fit: whole_model(&exam, options),
@@ -141,6 +144,7 @@ pub(crate) fn of_model(
         circle: Vec::new(),
         identifiability: Identifiability { shares: Vec::new(), rank: exam.free.len(), hidden: Vec::new() },
         remarks: remarks(&exam, dependence.as_ref()),
+        confounders,
         outliers: exam.fitted.outliers.clone(),
         setup: Arc::clone(&exam.fitted.observed.setup),
         taken: exam.fitted.taken.clone(),
@@ -152,21 +156,20 @@ pub(crate) fn of_model(
     })
 }
 
+/// An effect is shown with 80 % probability at 5 % where it moves the observations by so many standard deviations.
+pub(super) fn surely() -> f64 {
+    normal_quantile(0.975) + normal_quantile(0.8)
+}
+
 /// What the data cannot show, and the minimum detectable sizes.
 fn visibility(exam: &Examination) -> (Vec<Unseen>, Vec<Detectable>) {
     let products = &exam.system.whole;
-    let surely = normal_quantile(0.975) + normal_quantile(0.8);
     let (mut unseen, mut detectable) = (Vec::new(), Vec::new());
-    for (index, asked) in exam.asked.iter().enumerate() {
-        let Question::Effect(effect, parameters) = &asked.question else { continue };
-        // If several shapes were tried, the usual one comes first and represents them.
-        if index > 0 && exam.asked[index - 1].effect() == Some(*effect) {
-            continue;
-        }
+    for (index, effect, parameters) in exam.representatives() {
         let projected = Projected::new(products, &exam.base(Some(index)));
         let mut why = None;
         let mut seen = false;
-        for (column, parameter) in asked.columns.iter().zip(parameters) {
+        for (column, parameter) in exam.asked[index].columns.iter().zip(parameters) {
             if projected.absorbed(products, *column) {
                 why = why.or_else(|| Some(Why::Absorbed(absorbing(exam, products, &projected.base, *column))));
                 continue;
@@ -178,7 +181,7 @@ fn visibility(exam: &Examination) -> (Vec<Unseen>, Vec<Detectable>) {
                 seen = true;
             }
             let (effect, parameter) = (effect.about.name, parameter.name);
-            detectable.push(Detectable { effect, parameter, size: surely / strength });
+            detectable.push(Detectable { effect, parameter, size: surely() / strength });
         }
         if let (false, Some(why)) = (seen, why) {
             unseen.push(Unseen { effect: effect.about.name, why });

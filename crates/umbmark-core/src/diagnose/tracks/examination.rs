@@ -154,6 +154,16 @@ impl Examination {
         base
     }
 
+    /// The effects that are tested, each by the first of its shapes, which is the usual one: place among all that is tested, effect, and the
+    /// parameters of its columns.
+    pub fn representatives(&self) -> impl Iterator<Item = (usize, &'static Entry, &[&'static Parameter])> {
+        self.asked.iter().enumerate().filter_map(|(index, asked)| match &asked.question {
+            Question::Effect(effect, _) if index > 0 && self.asked[index - 1].effect() == Some(*effect) => None,
+            Question::Effect(effect, parameters) => Some((index, *effect, &parameters[..])),
+            Question::Smooth(..) => None,
+        })
+    }
+
     /// The largest factor by which fitting a group's columns too widens a standard error of the first effects.
     pub fn widening(&self, columns: &[usize]) -> f64 {
         let first = self.fitted.model.robot().drive.first_effects();

@@ -114,6 +114,24 @@ impl Alone {
         Elsewhere { misses, only: by_level.iter().enumerate().flat_map(of_level).collect() }
     }
 
+    /// The columns that products of some runs determine, those of the reference first, and those of the model that they do not.
+    fn told_by(&self, system: &System, products: &DMatrix<f64>) -> (Vec<usize>, Vec<usize>) {
+        let (own, residual) = (self.fitted.free.len(), system.residual());
+        let (mut told, mut untold): (Vec<usize>, Vec<usize>) = ((own..residual).collect(), Vec::new());
+        for column in 0..own {
+            let left = |products: &DMatrix<f64>| Projected::new(products, &told).products[(column, column)];
+            let is_told = left(products) >= TOLD * left(&system.whole);
+            if is_told { told.push(column) } else { untold.push(column) }
+        }
+        (told, untold)
+    }
+
+    /// Whether every number of the model is determined without any one of the folds.
+    pub fn is_told_without_any_fold(&self) -> bool {
+        let system = self.usual.as_ref().unwrap_or(&self.system);
+        (0..system.folds()).into_par_iter().all(|fold| self.told_by(system, &system.without(fold)).1.is_empty())
+    }
+
     /// The model's own values by products of some runs, and the effects of which these say next to nothing: they are taken to do nothing, and
     /// what they explain falls to the others.
     fn fitted_to(
@@ -122,12 +140,7 @@ impl Alone {
         mut products: DMatrix<f64>,
     ) -> ((Vec<usize>, DVector<f64>), Vec<&'static str>) {
         let (own, residual) = (self.fitted.free.len(), system.residual());
-        let (mut told, mut untold): (Vec<usize>, Vec<usize>) = ((own..residual).collect(), Vec::new());
-        for column in 0..own {
-            let left = |products: &DMatrix<f64>| Projected::new(products, &told).products[(column, column)];
-            let is_told = left(&products) >= TOLD * left(&system.whole);
-            if is_told { told.push(column) } else { untold.push(column) }
-        }
+        let (told, untold) = self.told_by(system, &products);
         for column in &untold {
             let added = products.column(residual) + products.column(*column) * self.fitted.departure(*column);
             products.set_column(residual, &added);

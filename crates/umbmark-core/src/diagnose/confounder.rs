@@ -1,0 +1,78 @@
+//! Effects that the data do not show, but that bias what they show.
+
+use crate::effect::find;
+
+/// An effect that the model lacks, of a size that these runs do not show, and its bias of fitted numbers.
+///
+/// With columns A of what is fitted and a of the effect, all whitened, an effect of size s that is left out biases the fitted numbers by
+/// (AᵀA)⁻¹Aᵀa s (omitted-variable bias). s is the usual size of the effect, or its minimum detectable size where that is smaller.
+///
+/// Source: W. H. Greene, Econometric Analysis, 7th ed., 2012, section 4.3.2.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Confounder {
+    /// The effect.
+    pub effect: &'static str,
+    /// Its parameter.
+    pub parameter: &'static str,
+    /// Its size \[unit of the parameter\].
+    pub size: f64,
+    /// The numbers that it moves, either way, beyond their intervals and by more than a tenth of their usual size.
+    pub biases: Vec<Bias>,
+}
+
+/// By how much an effect that is left out biases a fitted number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bias {
+    /// The effect that the number belongs to.
+    pub effect: &'static str,
+    /// The number.
+    pub parameter: &'static str,
+    /// The bias, without its sign \[unit of the number\].
+    pub bias: f64,
+    /// Half the width of the number's interval \[same unit\].
+    pub half_width: f64,
+}
+
+impl Confounder {
+    /// The largest of its biases, in half-widths.
+    pub fn worst(&self) -> f64 {
+        self.biases.iter().map(|own| own.bias / own.half_width).fold(0.0, f64::max)
+    }
+
+    /// Its name with its size, the number to two digits: "speed_slip of 0.015 s/m".
+    fn with_size(&self) -> String {
+        let parameters = find(self.effect).ok().map(|entry| entry.about.parameters);
+        let unit =
+            parameters.and_then(|all| all.iter().find(|own| own.name == self.parameter)).map_or("", |own| own.unit);
+        let digits = format!("{:.1e}", self.size);
+        let size = digits.parse::<f64>().map_or(digits, |size| size.to_string());
+        format!("{} of {size} {unit}", self.effect).trim_end().to_owned()
+    }
+}
+
+/// By how much the worst of some confounders, largest first, would move each number, and what would show the first of them; `None` for no
+/// confounder.
+pub(super) fn sentence(confounders: &[Confounder]) -> Option<String> {
+    let mut worst: Vec<(&Bias, &Confounder)> = Vec::new();
+    for own in confounders {
+        for bias in &own.biases {
+            match worst.iter_mut().find(|(known, _)| (known.effect, known.parameter) == (bias.effect, bias.parameter)) {
+                Some(known) if known.0.bias >= bias.bias => {}
+                Some(known) => *known = (bias, own),
+                None => worst.push((bias, own)),
+            }
+        }
+    }
+    let (_, first) = worst.first()?;
+    let one = |(bias, own): &(&Bias, &Confounder)| {
+        format!("{} of {} by {:.4} ({})", bias.parameter, bias.effect, bias.bias, own.with_size())
+    };
+    let moved: Vec<String> = worst.iter().map(one).collect();
+    let shown = find(first.effect)
+        .ok()
+        .map_or(String::new(), |entry| format!(" What would show {}: {}.", first.effect, entry.about.separated_by));
+    Some(format!(
+        "The intervals hold if the model lacks no effect. Effects of at most their usual size that these runs would not show may move {}.{shown}",
+        moved.join(", ")
+    ))
+}
