@@ -13,7 +13,7 @@ import textwrap
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import umbmark
+from umbmark import _umbmark
 
 PACKAGE = Path(__file__).parents[1]
 STUB = PACKAGE / "python" / "umbmark" / "_umbmark.pyi"
@@ -109,7 +109,7 @@ def with_docs(text: str) -> str:
             if isinstance(node, ast.ClassDef) and thing is not None:
                 visit(node.body, thing)
 
-    visit(ast.parse(text).body, umbmark._umbmark)
+    visit(ast.parse(text).body, _umbmark)
     for begin, end, put in sorted(changes, key=lambda change: change[:2], reverse=True):
         lines[begin:end] = put
     command = [sys.executable, "-m", "ruff", "format", "--config", str(PACKAGE / "pyproject.toml")]

@@ -1,4 +1,4 @@
-"""The workbench that Python opens: it answers its page, to who has its address, until it is closed."""
+"""The workbench that Python opens answers who has its address, until it is closed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ import webbrowser
 from pathlib import Path
 
 import pytest
-
 import umbmark
 
 
@@ -48,11 +47,14 @@ def test_a_dataset_in_memory_is_shown_with_its_runs(data: umbmark.Dataset, tmp_p
         asked(workbench.address)
 
 
-def test_what_stands_in_a_folder_is_served_from_there(data: umbmark.Dataset, tmp_path: Path) -> None:
+def test_what_stands_in_a_folder_is_served_from_there(
+    data: umbmark.Dataset, tmp_path: Path
+) -> None:
     data.save(tmp_path / "robot")
     drops = tmp_path / "drops"
     with umbmark.open(tmp_path / "robot", browser=False, drops=drops) as workbench:
-        assert str(tmp_path / "robot") in json.dumps(json.loads(asked(workbench.address + "api/state")))
+        state = json.loads(asked(workbench.address + "api/state"))
+        assert str(tmp_path / "robot") in json.dumps(state)
     assert not drops.exists()
 
 
@@ -61,7 +63,8 @@ def test_another_address_gets_nothing(tmp_path: Path) -> None:
         host = workbench.address.split("/")[2]
         with pytest.raises(urllib.error.HTTPError) as refused:
             asked(f"http://{host}/0123/")
-        assert refused.value.code == 403
+        with refused.value as answer:
+            assert answer.code == 403
 
 
 def test_what_cannot_be_served_is_said(tmp_path: Path) -> None:

@@ -13,7 +13,6 @@ from types import TracebackType
 from umbmark import _umbmark
 from umbmark._arguments import Seed, options_of, whole
 from umbmark._scores import Data, data_of
-from umbmark._umbmark import Dataset
 
 # Between two looks at whether it still answers.
 LOOK_SECONDS = 0.2
@@ -31,7 +30,7 @@ class Workbench:
     def __init__(self, server: _umbmark.Server) -> None:
         """Show what is served."""
         self._server = server
-        self.address = server.address
+        self.address: str = server.address
 
     @property
     def is_open(self) -> bool:
@@ -76,7 +75,7 @@ class Workbench:
         )
 
 
-def open(  # noqa: A001  # as the command is called
+def open(
     data: Data | None = None,
     *,
     port: int = 0,
@@ -94,8 +93,8 @@ def open(  # noqa: A001  # as the command is called
     Parameters
     ----------
     data : Dataset or path-like, optional
-        The measurements to begin with; a dataset in memory is written to a folder in ``drops``. Without
-        it, files can be dropped on the page, or returns typed there.
+        The measurements to begin with; a dataset in memory is written to a folder in ``drops``.
+        Without it, files can be dropped on the page, or returns typed there.
     port : int, default 0
         The port; 0 takes any that is free.
     browser : bool, optional
@@ -140,7 +139,7 @@ def open(  # noqa: A001  # as the command is called
 
 
 def _place_of(data: Data, drops: str) -> str:
-    """Give the place of a dataset; one in memory, or several, are written to a folder of their own."""
+    """Give the place of a dataset; one in memory, or several, are written to a folder."""
     if isinstance(data, str | PathLike):
         return fspath(data)
     read = data_of(data)
