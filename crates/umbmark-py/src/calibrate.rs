@@ -37,30 +37,34 @@ pub fn calibrate(
         heading_arm: heading_arm_m,
         radius_wheelbase: choice("radius_wheelbase", radius_wheelbase, &WHEELBASES)?,
     };
-    let robot = data.0.nominal_robot().map_err(refused)?;
-    if !robot.drive.kind().has_axle_wheels() {
-        let kind = robot.drive.kind().name();
-        let words = format!("this calibrates differential drives, got drive = \"{kind}\"; use calibrate_gears");
+    let kind = data.0.nominal_robot().map_err(refused)?.drive.kind();
+    if !kind.has_axle_wheels() {
+        let name = kind.name();
+        let words = format!("this calibrates differential drives, got drive = \"{name}\"; use calibrate_gears");
         return Err(DataError::new_err(words));
     }
     let shared = Arc::clone(&data.0);
     let testing = diagnose::Options::default();
-    let work = move |watch: &Watch| match learn {
-        true => watch.work(|watch| solve::calibrate_beside(&shared, &options, &testing, watch)),
-        false => core::calibrate(&shared, &options).map(|found| (found, None)),
+    let work = move |watch: &Watch| {
+        let (mut calibration, answer) = match learn {
+            true => watch.work(|watch| solve::calibrate_beside(&shared, &options, &testing, watch)),
+            false => core::calibrate(&shared, &options).map(|found| (found, None)),
+        }
+        .map_err(refused)?;
+        if calibration.estimates.is_empty() {
+            let why = calibration.warnings.join("\n");
+            return Err(DataError::new_err(format!("nothing can be calibrated from these runs\n{why}")));
+        }
+        if !learn {
+            calibration.doubts.push(NOT_LEARNT.to_owned());
+        }
+        let noticed = calibration.setup.notices().len();
+        calibration.warnings.splice(noticed..noticed, shared.warnings.iter().cloned());
+        let robot = shared.nominal_robot().map_err(refused)?;
+        let text = told::calibration(robot, &calibration, answer.as_ref(), level, testing.size);
+        Ok((json(&result::Calibration::new(robot, &calibration, answer.as_ref(), level))?, text))
     };
-    let (mut calibration, answer) = watched(py, threads, None, work)?.map_err(refused)?;
-    if calibration.estimates.is_empty() {
-        let why = calibration.warnings.join("\n");
-        return Err(DataError::new_err(format!("nothing can be calibrated from these runs\n{why}")));
-    }
-    if !learn {
-        calibration.doubts.push(NOT_LEARNT.to_owned());
-    }
-    let noticed = calibration.setup.notices().len();
-    calibration.warnings.splice(noticed..noticed, data.0.warnings.iter().cloned());
-    let text = told::calibration(robot, &calibration, answer.as_ref(), level, testing.size);
-    Ok((json(&result::Calibration::new(robot, &calibration, answer.as_ref(), level))?, text))
+    watched(py, threads, None, work)?
 }
 
 /// A calibration of any drive by its first effects: the document, the text, the model, and the corrected robot.

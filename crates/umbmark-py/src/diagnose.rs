@@ -65,9 +65,11 @@ pub fn diagnose(
     let options = options_of(options, return_poses)?;
     let model = asked(py, data, model)?;
     let shared = Arc::clone(&data.0);
-    let diagnosis = watched(py, threads, None, move |_| core::diagnose(&shared, &model, &options))?.map_err(refused)?;
-    let text = told::diagnosis(&data.0, &diagnosis, &options);
-    Ok((json(&result::Diagnosis::new(&diagnosis, &options))?, text, diagnosis.model.into()))
+    watched(py, threads, None, move |_| {
+        let diagnosis = core::diagnose(&shared, &model, &options).map_err(refused)?;
+        let text = told::diagnosis(&shared, &diagnosis, &options);
+        Ok((json(&result::Diagnosis::new(&diagnosis, &options))?, text, diagnosis.model.into()))
+    })?
 }
 
 /// Names of parameters with two numbers each: bounds, or means and standard deviations.
