@@ -7,7 +7,7 @@ use crate::effect::find;
 /// With columns A of what is fitted and a of the effect, all whitened, an effect of size s that is left out biases the fitted numbers by
 /// (AᵀA)⁻¹Aᵀa s (omitted-variable bias). s is the usual size of the effect, or its minimum detectable size where that is smaller.
 ///
-/// Source: W. H. Greene, Econometric Analysis, 7th ed., 2012, section 4.3.2.
+/// Source: W. H. Greene, Econometric Analysis, 7th ed., 2012.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Confounder {
     /// The effect.
