@@ -6,7 +6,7 @@
 
 use std::error::Error;
 
-use umbmark_core::effect::{About, ActsOn, BodyLaw, Context, Effect, Entry, Model};
+use umbmark_core::effect::{About, ActsOn, BodyLaw, Effect, Entry, Here, Model};
 use umbmark_core::evidence::fit;
 use umbmark_core::geometry::{Displacement2, Real};
 use umbmark_core::parameter::Parameter;
@@ -43,7 +43,7 @@ impl Effect for Tilt {
 }
 
 impl BodyLaw for Tilt {
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let (sine, _) = at.heading.sine_cosine();
         motion.rotation += p[0] * sine * at.length;
     }

@@ -313,6 +313,29 @@ def test_no_request_leaves_this_machine(slope: Server) -> None:
     assert all(url.startswith(slope.address) for url in far)
 
 
+def test_a_robot_of_the_paper_is_drawn_with_its_numbers_beside_what_was_published(
+    browser: webdriver.Chrome, slope: Server
+) -> None:
+    page = Page(browser, slope)
+    page.click("tab-cloud")
+    page.wait("return document.getElementById('cloud').dataset.n === '10000'")
+    page.run(
+        "[...document.querySelectorAll('#part-cloud button')]"
+        ".find((b) => b.textContent.startsWith('2.')).click()"
+    )
+    page.wait("return document.getElementById('cloud-command').textContent.includes('1.00203')")
+    told = page.run("return document.getElementById('published').textContent")
+    assert "E_max,sys 423.0 mm, sigma 31.0 mm" in told
+    mean = page.run("return document.querySelector('#cloud-table tbody td').textContent")
+    assert 400.0 < float(mean.split()[0]) < 440.0
+    page.run(
+        "const s = document.getElementById('mc-e_d'); s.value = 1;"
+        "s.dispatchEvent(new Event('input'));"
+    )
+    page.wait("return document.getElementById('cloud-command').textContent.includes('--ed 1 ')")
+    assert page.run("return document.getElementById('published').textContent") == ""
+
+
 @pytest.mark.parametrize("width", [390, 1280, 3840])
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_every_part_fits_its_width_in_light_and_dark_and_axe_finds_nothing(

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Context;
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Contrast, OnCircle, first_model};
-use umbmark_core::effect::{Model, find};
+use umbmark_core::effect::{Model, parameter_of};
 use umbmark_core::evidence::Estimate;
 use umbmark_core::likelihood::{Noise, Outlier};
 use umbmark_core::result::meaning;
@@ -47,8 +47,11 @@ pub fn write_learnt(solution: &Solution, file: &Path, force: bool) -> anyhow::Re
 
 /// The unit of a parameter, with a space before it.
 pub fn unit_of(effect: &str, parameter: &str) -> String {
-    let unit = find(effect).ok().and_then(|e| e.about.parameters.iter().find(|p| p.name == parameter)).map(|p| p.unit);
-    unit.filter(|unit| !unit.is_empty()).map(|unit| format!(" {unit}")).unwrap_or_default()
+    parameter_of(effect, parameter)
+        .map(|own| own.unit)
+        .filter(|unit| !unit.is_empty())
+        .map(|unit| format!(" {unit}"))
+        .unwrap_or_default()
 }
 
 /// What was fitted, a row each.

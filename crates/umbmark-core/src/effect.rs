@@ -36,7 +36,7 @@ use crate::register;
 pub use bumps::extra_travel;
 pub use chain::Chain;
 pub use changes::Changes;
-pub use context::{Aside, Context, Filter, Progress, RunContext, Sight};
+pub use context::{Aside, Context, Filter, Here, Progress, RunContext, Sight};
 pub(crate) use conversion::differences;
 pub use conversion::{CONVERTED, Conversion};
 pub use entry::{Entry, Evaluate, MeanLaws, RandomLaws};
@@ -151,6 +151,11 @@ pub fn find(name: &str) -> Result<&'static Entry, ModelError> {
         name: name.to_owned(),
         nearest: nearest(name, CATALOGUE.iter().map(|entry| entry.about.name)),
     })
+}
+
+/// A parameter of an effect of the catalogue, by the names of both.
+pub fn parameter_of(effect: &str, name: &str) -> Option<&'static Parameter> {
+    find(effect).ok()?.about.parameters.iter().find(|parameter| parameter.name == name)
 }
 
 /// Where an effect acts.

@@ -43,7 +43,7 @@ const VAGUE: f64 = 0.1;
 pub struct Solution {
     /// The model, and how it was learnt.
     pub learnt: Learnt,
-    /// Effects with which these runs are about as likely, and the numbers of the robot are others: the intervals of these allow for them.
+    /// Effects with which these runs are about as likely, and the fitted numbers are others: the intervals of these allow for them.
     pub others: Vec<Other>,
     /// Numbers of the robot that these runs show, with their new values.
     pub changes: Vec<Change>,
@@ -106,7 +106,7 @@ pub fn calibrate_beside(
 
 impl Solution {
     /// The answer that a learnt model gives about the robot of its data.
-    pub fn of(data: &Dataset, learnt: Learnt, options: &Options) -> Result<Solution, FitError> {
+    pub fn of(data: &Dataset, mut learnt: Learnt, options: &Options) -> Result<Solution, FitError> {
         let robot = robot_of(data)?;
         let not_shown: Vec<&str> = {
             let has = |effect: &&str| learnt.model.parts().iter().any(|part| part.effect.name() == *effect);
@@ -125,7 +125,8 @@ impl Solution {
         let evidence = AnyEvidence::of(data, options.level(data))?;
         let off = Meter::new(data, &evidence).map(|meter| Off::of(&meter, &learnt));
         let others = if learnt.partial { Vec::new() } else { others::of(&evidence, &learnt, options.size) };
-        let (mut changes, needed) = numbers::of(&learnt, &others, options.size);
+        others::widen(&mut learnt.diagnosis, &others, 1.0 - options.size);
+        let (mut changes, needed) = numbers::of(&learnt, options.size);
         if let Some(off) = &off {
             numbers::share(&mut changes, off, &learnt.model);
         }
@@ -216,7 +217,7 @@ impl Solution {
     /// E_d, E_b and E_s of the model, as far as it shows them; `None` of a drive that has others, or where nothing was fitted.
     pub fn estimate(&self) -> Option<Estimate> {
         let has_wheels = self.learnt.model.robot().drive.kind().has_axle_wheels();
-        has_wheels.then(|| numbers::estimate(&self.learnt, &self.others)).flatten()
+        has_wheels.then(|| numbers::estimate(&self.learnt)).flatten()
     }
 
     /// The correction of the robot's odometry.

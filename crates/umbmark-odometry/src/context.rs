@@ -2,6 +2,7 @@
 
 use crate::geometry::{Pose2, Real};
 use crate::travel::WheelTravel;
+use core::ops::Deref;
 
 /// The robot's numbers that the variables of laws are computed with.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,14 +57,7 @@ impl Aside {
 ///
 /// Cumulative quantities have their value at the beginning of the piece, rates their mean over it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Context<T = f64> {
-    /// Heading in the room \[rad\], counter-clockwise from the heading at START, at the beginning of the piece.
-    pub heading: T,
-    /// Place of the robot in the room \[m\] along the heading at START, at the beginning of the piece; 0 in what [`Progress`] gives,
-    /// which knows no place: see [`Context::at_pose`].
-    pub x: T,
-    /// The same to the left of it \[m\].
-    pub y: T,
+pub struct Context {
     /// Duration of the piece \[s\].
     pub duration: f64,
     /// Speed of the axle's centre \[m/s\], forward positive.
@@ -125,55 +119,48 @@ pub struct Context<T = f64> {
     pub recorded: bool,
 }
 
-impl Context {
-    /// The same piece where the robot is at this pose in the room at its beginning, values or duals.
-    #[inline(always)]
-    pub fn at_pose<T: Real>(&self, pose: &Pose2<T>) -> Context<T> {
-        Context {
-            heading: pose.heading,
-            x: pose.x,
-            y: pose.y,
-            duration: self.duration,
-            speed: self.speed,
-            turn_rate: self.turn_rate,
-            wheel_speed: self.wheel_speed,
-            speed_change: self.speed_change,
-            turn_rate_change: self.turn_rate_change,
-            wheel_angle: self.wheel_angle,
-            wheel_rotation: self.wheel_rotation,
-            wheel_travel: self.wheel_travel,
-            aside: self.aside,
-            falls_behind: self.falls_behind,
-            reversed: self.reversed,
-            distance: self.distance,
-            time: self.time,
-            session_distance: self.session_distance,
-            since_turn: self.since_turn,
-            since_stop: self.since_stop,
-            length: self.length,
-            last_turn: self.last_turn,
-            believed_heading: self.believed_heading,
-            truck: self.truck,
-            wheelbase: self.wheelbase,
-            axle_distance: self.axle_distance,
-            wheel_layout: self.wheel_layout,
-            run: self.run,
-            direction: self.direction,
-            clock_excess: self.clock_excess,
-            recorded: self.recorded,
-        }
-    }
+/// Where the robot is at the beginning of a piece, values or duals, and the piece, whose variables are read as if they were its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Here<'a, T = f64> {
+    /// Heading in the room \[rad\], counter-clockwise from the heading at START.
+    pub heading: T,
+    /// Place of the robot in the room \[m\] along the heading at START.
+    pub x: T,
+    /// The same to the left of it \[m\].
+    pub y: T,
+    at: &'a Context,
 }
 
-impl<T: Real> Context<T> {
-    /// Where the robot is at the beginning of the piece.
+impl<T: Real> Here<'_, T> {
+    /// Where the robot is.
     #[inline(always)]
     pub fn pose(&self) -> Pose2<T> {
         Pose2::new(self.x, self.y, self.heading)
     }
 }
 
-impl<T> Context<T> {
+impl<T> Deref for Here<'_, T> {
+    type Target = Context;
+
+    #[inline(always)]
+    fn deref(&self) -> &Context {
+        self.at
+    }
+}
+
+impl Context {
+    /// The piece with the robot at this pose in the room at its beginning.
+    #[inline(always)]
+    pub fn at_pose<T: Real>(&self, pose: &Pose2<T>) -> Here<'_, T> {
+        Here { heading: pose.heading, x: pose.x, y: pose.y, at: self }
+    }
+
+    /// The piece with the robot at START, heading as the odometry believes.
+    #[inline(always)]
+    pub fn as_believed(&self) -> Here<'_> {
+        Here { heading: self.believed_heading, x: 0.0, y: 0.0, at: self }
+    }
+
     /// Whether the robot turns about a point within a wheelbase of its axle's centre: |v_R - v_L| > |v|.
     pub fn turns_on_the_spot(&self) -> bool {
         let [left, right] = self.wheel_speed;
@@ -181,7 +168,7 @@ impl<T> Context<T> {
     }
 
     /// The same piece of which only a share is driven.
-    pub fn part(self, share: f64) -> Context<T> {
+    pub fn part(self, share: f64) -> Context {
         let Aside { way, disagreement, speed } = self.aside;
         Context { aside: Aside { way: share * way, disagreement: share * disagreement, speed }, ..self }
     }
@@ -380,9 +367,8 @@ impl Progress {
         if rolls && reversal(&mut self.way_sense, &mut self.way_behind, forward, least) != 0.0 {
             now.since_stop = 0.0;
         }
-        now.believed_heading = now.heading;
         let piece = *now;
-        now.heading += rotation;
+        now.believed_heading += rotation;
         now.wheel_angle = [0, 1].map(|w| now.wheel_angle[w] + now.wheel_rotation[w]);
         now.distance += now.length;
         now.session_distance += now.length;
@@ -477,7 +463,7 @@ mod tests {
         let seen = drive(&pieces);
         assert_eq!((seen[2].last_turn, seen[12].last_turn, seen[14].last_turn), (0.0, -1.0, -1.0));
         assert!((seen[2].since_turn - 0.2).abs() < 1e-12 && (seen[14].since_turn - 0.1).abs() < 1e-12);
-        assert!((seen[14].heading + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        assert!((seen[14].believed_heading + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
         assert!((seen[14].distance - 0.4).abs() < 1e-12 && (seen[14].time - 1.4).abs() < 1e-12);
     }
 
@@ -567,7 +553,7 @@ mod tests {
     fn rates_are_means_and_acceleration_is_the_change_over_the_duration() {
         let piece = drive(&[(0.005, 0.005)])[0];
         assert!((piece.speed - 0.05).abs() < 1e-15 && (piece.acceleration() - 1.0).abs() < 1e-12);
-        assert_eq!(Context::<f64>::default().acceleration(), 0.0);
+        assert_eq!(Context::default().acceleration(), 0.0);
         let mut progress = Progress::new(&labmate(), &Place::default(), true);
         let turn = progress.piece(&WheelTravel::default(), 0.5, [0.0; 2], [-0.034, 0.034]);
         assert!((turn.turn_acceleration() - 0.4).abs() < 1e-12, "{}", turn.turn_acceleration());

@@ -23,7 +23,7 @@ pub use wheels::{
     Wheelbase,
 };
 
-use crate::context::Context;
+use crate::context::Here;
 use crate::geometry::{Displacement2, Real};
 use crate::travel::WheelTravel;
 use core::fmt;
@@ -31,13 +31,13 @@ use core::fmt;
 /// A law of the wheels. Mark it and what it calls `#[inline(always)]`, so that derivatives use the widest registers of the machine.
 pub trait WheelLaw {
     /// Changes believed into true wheel travel \[m\].
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>);
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>);
 }
 
 /// A law of the body; see [`WheelLaw`].
 pub trait BodyLaw {
     /// Changes the body motion that true wheel travel makes.
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>);
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>);
 }
 
 /// What a wheel rolls is at most twice, and at least half of what it counts; where it is not, play or a late reading makes most of a small
@@ -46,7 +46,7 @@ const SIZES: core::ops::Range<f64> = 0.5..2.0;
 
 /// What a wheel rolled for each metre that it counted: the speed of its rim is so many times that of its counts.
 #[inline(always)]
-fn size<T: Real>(rolled: T, at: &Context<T>, wheel: usize) -> T {
+fn size<T: Real>(rolled: T, at: &Here<T>, wheel: usize) -> T {
     let size = rolled / at.wheel_travel[wheel];
     if SIZES.contains(&size.value()) { size } else { T::from(1.0) }
 }
@@ -55,9 +55,9 @@ fn size<T: Real>(rolled: T, at: &Context<T>, wheel: usize) -> T {
 #[derive(Clone, Copy)]
 pub enum Acts {
     /// The travel of the wheels.
-    Wheels(fn(&[f64], &Context, &mut WheelTravel)),
+    Wheels(fn(&[f64], &Here, &mut WheelTravel)),
     /// The motion of the body.
-    Body(fn(&[f64], &Context, &mut Displacement2)),
+    Body(fn(&[f64], &Here, &mut Displacement2)),
 }
 
 /// A law as data: what a [table](crate::Table) may hold.

@@ -1,6 +1,6 @@
 //! One reading of the counters after the other, and the pose after each.
 
-use crate::context::{Context, Place, Progress};
+use crate::context::{Here, Place, Progress};
 use crate::gearing::{Gearing, roll_over};
 use crate::geometry::{Displacement2, Pose2};
 use crate::law::Acts;
@@ -251,7 +251,7 @@ impl<const READINGS: usize> Log<'_, READINGS> {
     }
 
     /// True motion of the body for a believed wheel travel.
-    fn displacement(&self, at: &Context, believed: WheelTravel) -> Displacement2 {
+    fn displacement(&self, at: &Here, believed: WheelTravel) -> Displacement2 {
         let mut travel = believed;
         for step in self.table.steps() {
             if let Acts::Wheels(change) = step.law.acts {

@@ -65,7 +65,7 @@ const story = storyPart({ act });
 const drag = latest((values) => post("api/predict", values), (told, values) => { drive.model(told.runs); if (Object.keys(values).length) model.error(told.errors?.rmse_m); }, fail);
 const model = modelPart({ act, job: begin, drag, fail, catalogue });
 const figures = figuresPart({ mark: (name) => drive.mark(name), catalogue });
-const cloud = cloudPart({ fail });
+const cloud = cloudPart({ fail, catalogue });
 const data = dataPart({ say, fail, refresh, work: () => choose("work"), catalogue });
 
 // The tour.

@@ -12,7 +12,7 @@ const SLIDERS = /** @type {[string, string, number, number, number, number][]} *
   ["runs", "runs each way", 1, 10, 1, 5],
 ]);
 
-/** @param {{ fail: (error: Error) => void }} page */
+/** @param {{ fail: (error: Error) => void, catalogue: any }} page */
 export function cloudPart(page) {
   const canvas = h("canvas", { role: "img", id: "cloud", "aria-label": "Cloud of returns" });
   const table = h("table", { id: "cloud-table" });
@@ -21,24 +21,36 @@ export function cloudPart(page) {
   const seed = h("input", { id: "seed", type: "number", min: 0, step: 1, value: 1 });
   const inputs = Object.fromEntries(SLIDERS.map(([name, , low, high, step, value]) => [name, h("input", { type: "range", id: `mc-${name}`, min: low, max: high, step, value })]));
   const outs = Object.fromEntries(SLIDERS.map(([name]) => [name, h("output", { for: `mc-${name}` })]));
+  const published = h("p", { id: "published", "aria-live": "polite" });
+  const robots = page.catalogue.paper.map((/** @type {any} */ own) => h("button", { type: "button", onclick: () => take(own) }, own.row));
   const root = h("div", { class: "two" },
     h("section", { class: "card", "aria-label": "Cloud of returns" }, h("h2", {}, "Where the robot comes back"), canvas,
       h("ul", { class: "legend" }, h("li", {}, h("span", { class: "mark dots", style: "--tone: var(--cw)" }), "clockwise"), h("li", {}, h("span", { class: "mark dots", style: "--tone: var(--ccw)" }), "counter-clockwise"), h("li", {}, "+ START")),
       h("p", { class: "hint" }, "A dot is the centre of the returns of one test each way. The robot is the paper's LabMate.")),
     h("section", { class: "card", "aria-label": "Robot and test" }, h("h2", {}, "Robot and test"),
+      h("div", { role: "group", "aria-label": "Robots of the paper", class: "buttons" }, h("span", { class: "small" }, "The paper's Table I and Figure 10: "), robots),
       SLIDERS.map(([name, words]) => h("div", { class: "controls" }, h("label", { for: `mc-${name}`, style: "grid-column: 1 / -1" }, words), h("span"), inputs[name], outs[name])),
       h("div", { class: "controls" }, h("label", { for: "trials" }, "tests"), h("div", {}, tests), ""),
       h("div", { class: "controls" }, h("label", { for: "seed" }, "seed"), h("div", {}, seed), ""),
-      h("div", { class: "scroll" }, table), h("p", { class: "small" }, "The same on a command line:"), command));
+      h("div", { class: "scroll" }, table), published, h("p", { class: "small" }, "The same on a command line:"), command));
 
   /** @type {any} */ let cloud = null;
-  const now = (/** @type {number} */ trials) => ({ ...Object.fromEntries(SLIDERS.map(([name]) => [name, Number(inputs[name].value)])), trials, seed: Math.max(0, Math.trunc(Number(seed.value) || 0)) });
+  /** Values between the steps of the sliders. @type {Record<string, number>} */ const exact = {};
+  const value = (/** @type {string} */ name) => exact[name] ?? Number(inputs[name].value);
+  const now = (/** @type {number} */ trials) => ({ ...Object.fromEntries(SLIDERS.map(([name]) => [name, value(name)])), trials, seed: Math.max(0, Math.trunc(Number(seed.value) || 0)) });
   const ask = latest((question) => post("api/cloud", question), (told) => { cloud = told; draw(); tell(); }, page.fail);
-  const words = () => { for (const [name] of SLIDERS) outs[name].textContent = plain(Number(inputs[name].value)); };
+  const words = () => { for (const [name] of SLIDERS) outs[name].textContent = plain(value(name)); };
   const refresh = () => { words(); ask(now(Number(tests.value))); };
+  /** One of the paper's robots, driven as it was. @param {any} own */
+  const take = (own) => {
+    Object.assign(exact, { e_d: own.e_d, e_b: own.e_b, noise: own.noise, side: 4, runs: 5 });
+    for (const [name] of SLIDERS) inputs[name].value = String(exact[name]);
+    published.textContent = `Published of ${own.row}: E_max,sys ${mm(own.e_max_sys_m)}, sigma ${mm(own.sigma_m)}. The noise is that of this sigma.`;
+    refresh();
+  };
   for (const [name] of SLIDERS) {
     // While it is dragged, at most 10 000 tests.
-    inputs[name].addEventListener("input", () => { words(); ask(now(Math.min(10000, Number(tests.value)))); });
+    inputs[name].addEventListener("input", () => { delete exact[name]; published.textContent = ""; words(); ask(now(Math.min(10000, Number(tests.value)))); });
     inputs[name].addEventListener("change", refresh);
   }
   tests.addEventListener("change", refresh);

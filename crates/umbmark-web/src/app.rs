@@ -11,11 +11,13 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+use umbmark_core::calibrate::Correction;
 use umbmark_core::dataset::Dataset;
-use umbmark_core::drive::Robot;
+use umbmark_core::drive::{DriveKind, Robot};
 use umbmark_core::effect::{CATALOGUE, Formula, Target};
 use umbmark_core::inspect::LogContents;
 use umbmark_core::parameter::Parameter;
+use umbmark_core::preset::{PRESETS, Preset, Published};
 use umbmark_core::result;
 use umbmark_io::export::{Export, TARGETS, Target as Exported};
 use umbmark_io::{Existing, KnownNumbers, Proposal, Topics, Words, contents};
@@ -456,7 +458,7 @@ fn checked(law: &Law) -> Result<Value, Trouble> {
     Ok(json!({}))
 }
 
-/// Effects, what formulas act on and may depend on, figures and targets.
+/// Effects, what formulas act on and may depend on, figures, targets, and robots of the paper.
 fn catalogue() -> Value {
     json!({
         "effects": CATALOGUE.iter().map(|entry| result::Effect::from(*entry)).collect::<Vec<_>>(),
@@ -465,8 +467,22 @@ fn catalogue() -> Value {
         "figures": kind::KINDS.iter().map(|kind| json!({ "name": kind.name, "about": kind.about })).collect::<Vec<_>>(),
         "targets": TARGETS.iter().map(|target| json!({ "name": target.name, "about": target.about })).collect::<Vec<_>>(),
         "plate": Robot::NUMBERS.iter().map(|p| json!({ "name": p.name, "unit": p.unit, "meaning": p.meaning, "usual": usual(p) })).collect::<Vec<_>>(),
+        "paper": of_the_paper(),
         "version": umbmark_core::VERSION,
     })
+}
+
+/// The LabMates of Table I: what the cloud is drawn with, and what was published.
+fn of_the_paper() -> Vec<Value> {
+    let labmates = PRESETS.iter().filter(|preset| preset.robot().drive.kind() == DriveKind::Differential);
+    let one = |preset: &Preset| {
+        let model = preset.model().ok()?;
+        let [e_d, e_b, _] = Correction::of(&model).values();
+        let noise = model.values().nth(model.place_of("wheel_noise", "k_sqrt_m")?)?;
+        let Published { row, e_max_sys, sigma } = preset.published;
+        Some(json!({ "row": row, "e_d": e_d, "e_b": e_b, "noise": noise, "e_max_sys_m": e_max_sys, "sigma_m": sigma }))
+    };
+    labmates.filter_map(one).collect()
 }
 
 /// The value of the paper's robot.

@@ -89,7 +89,7 @@ fn the_covariance_is_that_of_drives_with_the_noise() {
         let mut stream = Stream::new(3, 0, draw);
         let mut pose = Pose2::IDENTITY;
         for (travel, at) in track.travel().iter().zip(track.contexts()) {
-            let mut motion = chain.displacement(at, travel);
+            let mut motion = chain.displacement(&at.as_believed(), travel);
             let (way, turned, rolled) = (motion.forward.abs(), motion.rotation.abs(), travel.rolled());
             motion.forward += noise.forward_per_metre * rolled.sqrt() * stream.normal();
             motion.sideways += noise.sideways_per_metre * rolled.sqrt() * stream.normal();

@@ -158,7 +158,11 @@ mod tests {
             right: believed.right * corrected.drive.wheel_diameter_right() / robot.drive.wheel_diameter_right(),
         };
         let (model, oracle) = (
-            correction.model(&robot).unwrap().chain().displacement(&crate::effect::Context::default(), &believed),
+            correction
+                .model(&robot)
+                .unwrap()
+                .chain()
+                .displacement(&crate::effect::Context::default().as_believed(), &believed),
             corrected.drive.displacement(&rolled),
         );
         assert!((model.forward - oracle.forward).abs() < 1e-15 && (model.rotation - oracle.rotation).abs() < 1e-15);

@@ -1,11 +1,12 @@
-//! Effects that the data do not show, but that bias what they show.
+//! Effects that the model lacks, and that bias what it tells.
 
-use crate::effect::find;
+use crate::effect::{find, parameter_of};
 
-/// An effect that the model lacks, of a size that these runs do not show, and its bias of fitted numbers.
+/// An effect that the model lacks, of a size that these runs allow, and its bias of fitted numbers.
 ///
 /// With columns A of what is fitted and a of the effect, all whitened, an effect of size s that is left out biases the fitted numbers by
-/// (AᵀA)⁻¹Aᵀa s (omitted-variable bias). s is the usual size of the effect, or its minimum detectable size where that is smaller.
+/// (AᵀA)⁻¹Aᵀa s (omitted-variable bias). s is the size that these runs show, of an effect that is significant and not in the model; of
+/// another its usual size, or its minimum detectable size where that is smaller.
 ///
 /// Source: W. H. Greene, Econometric Analysis, 7th ed., 2012.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,9 +42,7 @@ impl Confounder {
 
     /// Its name with its size, the number to two digits: "speed_slip of 0.015 s/m".
     fn with_size(&self) -> String {
-        let parameters = find(self.effect).ok().map(|entry| entry.about.parameters);
-        let unit =
-            parameters.and_then(|all| all.iter().find(|own| own.name == self.parameter)).map_or("", |own| own.unit);
+        let unit = parameter_of(self.effect, self.parameter).map_or("", |own| own.unit);
         let digits = format!("{:.1e}", self.size);
         let size = digits.parse::<f64>().map_or(digits, |size| size.to_string());
         format!("{} of {size} {unit}", self.effect).trim_end().to_owned()
@@ -72,7 +71,7 @@ pub(super) fn sentence(confounders: &[Confounder]) -> Option<String> {
         .ok()
         .map_or(String::new(), |entry| format!(" What would show {}: {}.", first.effect, entry.about.separated_by));
     Some(format!(
-        "The intervals hold if the model lacks no effect. Effects of at most their usual size that these runs would not show may move {}.{shown}",
+        "The intervals hold if the model lacks no effect. These runs allow effects that would move {}.{shown}",
         moved.join(", ")
     ))
 }

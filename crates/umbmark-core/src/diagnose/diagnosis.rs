@@ -86,7 +86,7 @@ pub struct Diagnosis {
     pub likeness: Likeness,
     /// Minimum detectable sizes.
     pub minimum_detectable: Vec<Detectable>,
-    /// Effects that would not show and would bias the first numbers of the model, the worst first; from tracks only.
+    /// Effects that the model lacks and that would bias its first numbers, the worst first; from tracks only.
     pub confounders: Vec<Confounder>,
     /// What to measure next, the most informative per minute first.
     pub next_experiments: Vec<Experiment>,
@@ -180,7 +180,7 @@ impl Diagnosis {
         parts
     }
 
-    /// What effects that these runs do not show would do to the first numbers of the model, in words; `None` where no such effect moves one beyond
+    /// What effects that the model lacks would do to its first numbers, in words; `None` where none that these runs allow moves one beyond
     /// its interval.
     pub fn confounding(&self) -> Option<String> {
         sentence(&self.confounders)

@@ -2,7 +2,7 @@
 
 use super::rollers::Ways;
 use super::words::{either, percent};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -46,7 +46,7 @@ impl Effect for AcrossDiameterRatio {
 
 impl BodyLaw for AcrossDiameterRatio {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let (more, ways, k) = (p[0] - 1.0, Ways::of(at, motion), at.wheel_layout[0]);
         motion.sideways += more * (ways.left + ways.round * k);
     }

@@ -2,7 +2,7 @@
 
 use super::rollers::{Ways, share};
 use super::words::{either, percent};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -49,7 +49,7 @@ impl Effect for AlongDiameterRatio {
 
 impl BodyLaw for AlongDiameterRatio {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let (e, ways, k) = (share(p[0]), Ways::of(at, motion), at.wheel_layout[0]);
         Ways { ahead: e * ways.round, left: -e * ways.ahead * k, round: e * ways.ahead }.add_to(at, motion);
     }

@@ -2,7 +2,7 @@
 
 use super::rollers::{Ways, share};
 use super::words::{either, percent};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -46,7 +46,7 @@ impl Effect for AxleDiameterRatio {
 
 impl BodyLaw for AxleDiameterRatio {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let (e, ways) = (share(p[0]), Ways::of(at, motion));
         Ways { ahead: e * at.aside.disagreement, left: e * ways.round, round: e * ways.left }.add_to(at, motion);
     }

@@ -1,6 +1,6 @@
 //! The effects of a model, applied: from believed to true motion, and to its measurement.
 
-use super::{Changes, Context, Evaluate, Filter, Formula, MAX_PARAMETERS, MeanLaws, Sight};
+use super::{Changes, Evaluate, Filter, Formula, Here, MAX_PARAMETERS, MeanLaws, Sight};
 use crate::drive::{DifferentialDrive, LinkReading, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use std::sync::Arc;
@@ -49,7 +49,7 @@ impl<T: Evaluate> Chain<T> {
         }
     }
 
-    /// Whether some of its effects may depend on [`Context::x`] and [`Context::y`].
+    /// Whether some of its effects may depend on [`Here::x`] and [`Here::y`].
     #[inline]
     pub(crate) fn reads_place(&self) -> bool {
         self.reads_place
@@ -66,13 +66,13 @@ impl<T: Evaluate> Chain<T> {
 
     /// True wheel travel for a believed one.
     #[inline(always)]
-    pub fn wheel_travel(&self, at: &Context<T>, believed: &WheelTravel) -> WheelTravel<T> {
+    pub fn wheel_travel(&self, at: &Here<T>, believed: &WheelTravel) -> WheelTravel<T> {
         self.rolled(at, WheelTravel { left: T::from(believed.left), right: T::from(believed.right) })
     }
 
     /// The same for a believed travel that itself has a derivative: that of a robot whose steering reacts to the effects.
     #[inline(always)]
-    pub fn rolled(&self, at: &Context<T>, believed: WheelTravel<T>) -> WheelTravel<T> {
+    pub fn rolled(&self, at: &Here<T>, believed: WheelTravel<T>) -> WheelTravel<T> {
         let mut travel = [believed];
         self.change_wheels(at, &mut travel);
         let [travel] = travel;
@@ -92,7 +92,7 @@ impl<T: Evaluate> Chain<T> {
 
     /// Turns believed wheel travels into true ones in place, effect after effect, so that no travel waits for another.
     #[inline(always)]
-    pub(crate) fn change_wheels(&self, at: &Context<T>, travels: &mut [WheelTravel<T>]) {
+    pub(crate) fn change_wheels(&self, at: &Here<T>, travels: &mut [WheelTravel<T>]) {
         for acting in self.acting(Changes::WHEELS) {
             for travel in &mut *travels {
                 match &acting.laws {
@@ -105,7 +105,7 @@ impl<T: Evaluate> Chain<T> {
 
     /// Body motion from a true wheel travel.
     #[inline(always)]
-    pub fn body(&self, at: &Context<T>, travel: &WheelTravel<T>) -> Displacement2<T> {
+    pub fn body(&self, at: &Here<T>, travel: &WheelTravel<T>) -> Displacement2<T> {
         let mut motion = [Displacement2 { sideways: T::from(at.aside.way), ..self.drive.displacement(travel) }];
         self.change_bodies(at, &mut motion);
         let [motion] = motion;
@@ -113,7 +113,7 @@ impl<T: Evaluate> Chain<T> {
     }
 
     /// Body motions from true wheel travels, at one context, written into `motions`.
-    pub(crate) fn bodies(&self, at: &Context<T>, travels: &[WheelTravel<T>], motions: &mut Vec<Displacement2<T>>) {
+    pub(crate) fn bodies(&self, at: &Here<T>, travels: &[WheelTravel<T>], motions: &mut Vec<Displacement2<T>>) {
         motions.clear();
         let sideways = T::from(at.aside.way);
         motions.extend(travels.iter().map(|travel| Displacement2 { sideways, ..self.drive.displacement(travel) }));
@@ -121,7 +121,7 @@ impl<T: Evaluate> Chain<T> {
     }
 
     #[inline(always)]
-    fn change_bodies(&self, at: &Context<T>, motions: &mut [Displacement2<T>]) {
+    fn change_bodies(&self, at: &Here<T>, motions: &mut [Displacement2<T>]) {
         for acting in self.acting(Changes::BODY) {
             for motion in &mut *motions {
                 match &acting.laws {
@@ -134,7 +134,7 @@ impl<T: Evaluate> Chain<T> {
 
     /// Body motion for a believed wheel travel at constant ratio of the wheel speeds.
     #[inline(always)]
-    pub fn displacement(&self, at: &Context<T>, believed: &WheelTravel) -> Displacement2<T> {
+    pub fn displacement(&self, at: &Here<T>, believed: &WheelTravel) -> Displacement2<T> {
         self.body(at, &self.wheel_travel(at, believed))
     }
 

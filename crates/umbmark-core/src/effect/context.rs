@@ -5,7 +5,7 @@ use crate::geometry::Pose2;
 use crate::path::Direction;
 
 use umbmark_odometry::context::Place;
-pub use umbmark_odometry::context::{Aside, Context, Progress};
+pub use umbmark_odometry::context::{Aside, Context, Here, Progress};
 
 /// The place of a run in its session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

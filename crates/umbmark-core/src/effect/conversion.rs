@@ -167,7 +167,7 @@ mod tests {
             let moved = |model: &Model| {
                 let per_tick = model.robot().metres_per_tick();
                 let believed = WheelTravel { left: counts[0] * per_tick.left, right: counts[1] * per_tick.right };
-                model.chain().displacement(&Context::default(), &believed)
+                model.chain().displacement(&Context::default().as_believed(), &believed)
             };
             let (before, after) = (moved(&model), moved(&converted));
             assert!((before.forward - after.forward).abs() < 1e-12, "{before:?} {after:?}");

@@ -65,7 +65,11 @@ mod tests {
             }
             let turned = rate * period * f64::from(n);
             let mut motion = Pose2::new(x, y, turned).log();
-            EncoderSampling::body(&[period], &Context { turn_rate: rate, ..Context::default() }, &mut motion);
+            EncoderSampling::body(
+                &[period],
+                &Context { turn_rate: rate, ..Context::default() }.as_believed(),
+                &mut motion,
+            );
             let end = Pose2::exp(&motion);
             let radius = speed / rate;
             let arc = (radius * libm::sin(turned), radius * (1.0 - libm::cos(turned)));
@@ -84,7 +88,7 @@ mod tests {
         }
         let chain = model_with(&model).chain();
         let at = Context { turn_rate: 0.3, recorded: true, ..Context::default() };
-        let moved = chain.displacement(&at, &WheelTravel { left: 0.1, right: 0.2 });
+        let moved = chain.displacement(&at.as_believed(), &WheelTravel { left: 0.1, right: 0.2 });
         assert_eq!(moved.sideways, 0.0);
     }
 }

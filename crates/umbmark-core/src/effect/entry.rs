@@ -4,8 +4,7 @@ use super::laws::{
     BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, FilterLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw,
 };
 use super::{
-    About, Bump, CATALOGUE, Changes, Context, Effect, Filter, MAX_PARAMETERS, Shown, Sight, Stretch, Tried,
-    WheelVariance,
+    About, Bump, CATALOGUE, Changes, Effect, Filter, Here, MAX_PARAMETERS, Shown, Sight, Stretch, Tried, WheelVariance,
 };
 use crate::drive::{DriveKind, DriveKinds, LinkReading, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Instructions, Pose2, Real};
@@ -17,9 +16,9 @@ pub struct MeanLaws<T: Real> {
     /// See [`StartLaw::start`].
     pub start: fn(&[T]) -> Pose2<T>,
     /// See [`WheelLaw::wheels`].
-    pub wheels: fn(&[T], &Context<T>, &mut WheelTravel<T>),
+    pub wheels: fn(&[T], &Here<T>, &mut WheelTravel<T>),
     /// See [`BodyLaw::body`].
-    pub body: fn(&[T], &Context<T>, &mut Displacement2<T>),
+    pub body: fn(&[T], &Here<T>, &mut Displacement2<T>),
     /// See [`LinkLaw::link`].
     pub link: fn(&[T], &mut LinkReading<T>),
     /// See [`ClockLaw::late`].
@@ -72,7 +71,7 @@ impl RandomLaws {
 ///
 /// ```
 /// use umbmark_core::{drive::Robot, geometry::{Displacement2, Real}, parameter::Parameter};
-/// use umbmark_core::effect::{About, ActsOn, BodyLaw, Context, Effect, Entry, Model};
+/// use umbmark_core::effect::{About, ActsOn, BodyLaw, Here, Effect, Entry, Model};
 /// struct Draught;
 /// impl Effect for Draught {
 ///     const ABOUT: About = About {
@@ -92,7 +91,7 @@ impl RandomLaws {
 ///     }
 /// }
 /// impl BodyLaw for Draught {
-///     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+///     fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
 ///         motion.sideways += p[0] * at.length;
 ///     }
 /// }
@@ -292,15 +291,15 @@ impl Evaluate for Dual {
 /// A law of derivatives compiled for registers of each width: for each of the [`Instructions`], in their order.
 macro_rules! for_each_width {
     ($law:ident of $Law:ident on $Moved:ty) => {
-        const fn $law<E: $Law>() -> [fn(&[Dual], &Context<Dual>, &mut $Moved); 3] {
+        const fn $law<E: $Law>() -> [fn(&[Dual], &Here<Dual>, &mut $Moved); 3] {
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx512f,avx512dq")]
-                fn eight<E: $Law>(p: &[Dual], at: &Context<Dual>, moved: &mut $Moved) {
+                fn eight<E: $Law>(p: &[Dual], at: &Here<Dual>, moved: &mut $Moved) {
                     E::$law(p, at, moved);
                 }
                 #[target_feature(enable = "avx2")]
-                fn four<E: $Law>(p: &[Dual], at: &Context<Dual>, moved: &mut $Moved) {
+                fn four<E: $Law>(p: &[Dual], at: &Here<Dual>, moved: &mut $Moved) {
                     E::$law(p, at, moved);
                 }
                 // SAFETY: `Evaluate::mean` hands these out to machines only that were found to have such registers.

@@ -27,7 +27,7 @@ mod units;
 mod variable;
 
 use super::name::lasting;
-use super::{CATALOGUE, Context, MAX_PARAMETERS};
+use super::{CATALOGUE, Here, MAX_PARAMETERS};
 use crate::drive::{DifferentialDrive, WheelTravel};
 use crate::geometry::{Displacement2, Dual, LANES, Pose2, Real};
 use crate::parameter::{DefaultValue, Parameter, Role};
@@ -112,7 +112,7 @@ impl Target {
     /// Factor of the formula for a piece: its length, its unsigned rotation, its duration (0 where the wheels stand), or 1 for
     /// a share.
     #[inline]
-    fn exposure<T>(self, at: &Context<T>) -> f64 {
+    fn exposure<T>(self, at: &Here<T>) -> f64 {
         match self {
             Target::HeadingPerMetre | Target::SidewaysPerMetre => at.length,
             Target::ForwardPerRadian | Target::SidewaysPerRadian => (at.turn_rate * at.duration).abs(),
@@ -244,7 +244,7 @@ impl Formula {
     pub(super) fn wheels<T: Real>(
         &self,
         p: &[T],
-        at: &Context<T>,
+        at: &Here<T>,
         drive: &DifferentialDrive,
         travel: &mut WheelTravel<T>,
     ) {
@@ -258,7 +258,7 @@ impl Formula {
 
     /// Changes the body motion that true wheel travel makes.
     #[inline]
-    pub(super) fn body<T: Real>(&self, p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    pub(super) fn body<T: Real>(&self, p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let exposure = self.target.exposure(at);
         if matches!(self.target, Target::LeftWheelScale | Target::RightWheelScale) || exposure == 0.0 {
             return;
@@ -274,7 +274,7 @@ impl Formula {
     }
 
     /// Refuses a piece on which the formula, or a derivative of it, is not finite.
-    pub(super) fn finite_at(&self, values: &[f64], at: &Context) -> Result<(), Singular> {
+    pub(super) fn finite_at(&self, values: &[f64], at: &Here) -> Result<(), Singular> {
         if self.target.exposure(at) == 0.0 {
             return Ok(());
         }
@@ -304,7 +304,7 @@ impl Formula {
         first.map_or(Ok(()), |op| Err(self.singular(op, values, at)))
     }
 
-    fn singular(&self, op: usize, values: &[f64], at: &Context) -> Singular {
+    fn singular(&self, op: usize, values: &[f64], at: &Here) -> Singular {
         let span = self.program.span(op);
         let mut said: Vec<String> = Vec::new();
         for (i, inside) in self.program.ops().iter().enumerate() {

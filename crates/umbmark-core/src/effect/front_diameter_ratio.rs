@@ -1,7 +1,7 @@
 //! Diameters of the two front wheels of a base on three omni wheels.
 
 use super::rollers::{self, Ways, share};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -49,7 +49,7 @@ impl Effect for FrontDiameterRatio {
 
 impl BodyLaw for FrontDiameterRatio {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let (e, ways) = (-share(p[0]) * THIRD_ROOT, Ways::of(at, motion));
         Ways { ahead: e * (ways.left + ways.round * 2.0), left: e * ways.ahead, round: e * ways.ahead }
             .add_to(at, motion);

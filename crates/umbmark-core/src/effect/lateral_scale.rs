@@ -1,7 +1,7 @@
 //! Sideways ways of a base on wheels with rollers.
 
 use super::words::mm;
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -35,7 +35,7 @@ impl Effect for LateralScale {
 
 impl BodyLaw for LateralScale {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], _at: &Here<T>, motion: &mut Displacement2<T>) {
         motion.sideways *= p[0];
     }
 }

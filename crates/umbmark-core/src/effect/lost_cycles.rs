@@ -1,7 +1,7 @@
 //! Ways that were reckoned from speeds over cycles that took longer than the log says.
 
 use super::words::percent;
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here, at_work};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -52,7 +52,7 @@ impl Effect for LostCycles {
 
 impl BodyLaw for LostCycles {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let whole = p[0] * at.clock_excess + 1.0;
         motion.forward *= whole;
         motion.sideways *= whole;

@@ -1,7 +1,7 @@
 //! A model: a choice of effects with values.
 
 use super::chain::{Acting, ActingLaws, Chain};
-use super::{Context, Entry, Evaluate, Formula, Law, MAX_PARAMETERS, find};
+use super::{Entry, Evaluate, Formula, Here, Law, MAX_PARAMETERS, find};
 use crate::drive::{DriveKinds, Robot};
 use crate::parameter::{Parameter, ParameterError, Role, nearest};
 use std::sync::Arc;
@@ -329,23 +329,22 @@ impl Model {
         self.parts.iter().any(|part| part.effect.formula().is_some())
     }
 
-    /// Whether some effect may depend on where the robot is in the room, [`Context::x`] and [`Context::y`]: a formula that has
+    /// Whether some effect may depend on where the robot is in the room, [`Here::x`](super::Here::x) and [`Here::y`](super::Here::y): a formula that has
     /// them, or an effect of a program's own.
     pub(crate) fn reads_place(&self) -> bool {
         self.parts.iter().any(|part| part.effect.reads_place())
     }
 
-    /// Refuses formulas that are not finite in some of these contexts. The contexts of a track have no place in the room: see
-    /// [`Track::check`](crate::replay::Track::check).
-    pub fn check_along<'a>(&self, contexts: impl IntoIterator<Item = &'a Context>) -> Result<(), ModelError> {
+    /// Refuses formulas that are not finite at some of these places.
+    pub fn check_along<'a>(&self, places: impl IntoIterator<Item = Here<'a>>) -> Result<(), ModelError> {
         let formulas: Vec<_> =
             self.parts.iter().filter_map(|part| Some((part.effect.formula()?, &part.values))).collect();
         if formulas.is_empty() {
             return Ok(());
         }
-        for at in contexts {
+        for at in places {
             for (formula, values) in &formulas {
-                formula.finite_at(values, at).map_err(|singular| ModelError::Singular {
+                formula.finite_at(values, &at).map_err(|singular| ModelError::Singular {
                     effect: formula.name(),
                     part: singular.part,
                     values: singular.values,
@@ -467,7 +466,7 @@ fn parameter_of<'a>(law: &'a Law, name: &str) -> Result<&'a Parameter, ModelErro
 mod tests {
     use super::*;
     use crate::drive::WheelTravel;
-    use crate::effect::CATALOGUE;
+    use crate::effect::{CATALOGUE, Context};
     use crate::geometry::{Pose2, seeded};
 
     #[test]
@@ -488,7 +487,10 @@ mod tests {
             model.add(entry.about.name).unwrap();
         }
         let believed = WheelTravel { left: 0.7, right: -0.2 };
-        assert_eq!(model.chain().displacement(&Context::default(), &believed), robot.drive.displacement(&believed));
+        assert_eq!(
+            model.chain().displacement(&Context::default().as_believed(), &believed),
+            robot.drive.displacement(&believed)
+        );
     }
 
     #[test]
@@ -498,10 +500,10 @@ mod tests {
         model.set("wheelbase", "e_b", 1.05).unwrap();
         model.set("scale", "e_s", 0.99).unwrap();
         let chain = model.chain();
-        let travel = chain.wheel_travel(&Context::default(), &WheelTravel { left: 1.0, right: 1.0 });
+        let travel = chain.wheel_travel(&Context::default().as_believed(), &WheelTravel { left: 1.0, right: 1.0 });
         assert!((travel.right / travel.left - 1.02).abs() < 1e-15);
         assert!((travel.right + travel.left - 2.0 * 0.99).abs() < 1e-15);
-        let motion = chain.body(&Context::default(), &travel);
+        let motion = chain.body(&Context::default().as_believed(), &travel);
         assert!((motion.rotation - (travel.right - travel.left) / (0.340 * 1.05)).abs() < 1e-15);
     }
 
@@ -521,7 +523,7 @@ mod tests {
             let at = |step: f64| {
                 let mut v = values.clone();
                 v[i] += step;
-                model.chain_with(&v).displacement(&Context::default(), &believed)
+                model.chain_with(&v).displacement(&Context::default().as_believed(), &believed)
             };
             let (h, l) = (at(1e-6), at(-1e-6));
             assert!((exact.forward.eps[i] - (h.forward - l.forward) / 2e-6).abs() < 1e-8);

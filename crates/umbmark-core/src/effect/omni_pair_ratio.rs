@@ -2,7 +2,7 @@
 
 use super::rollers::{Ways, share};
 use super::words::{either, percent};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -47,7 +47,7 @@ impl Effect for OmniPairRatio {
 
 impl BodyLaw for OmniPairRatio {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let (e, [cosine, sine], ways) = (share(p[0]), at.wheel_layout, Ways::of(at, motion));
         Ways {
             ahead: -e * (ways.ahead * cosine + ways.left * sine),

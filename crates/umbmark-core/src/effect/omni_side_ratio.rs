@@ -2,7 +2,7 @@
 
 use super::rollers::{Ways, share_of_omni_wheels};
 use super::words::{either, percent};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -46,7 +46,7 @@ impl Effect for OmniSideRatio {
 
 impl BodyLaw for OmniSideRatio {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let (e, [cosine, sine]) = (share_of_omni_wheels(p[0], at), at.wheel_layout);
         let (ways, apart) = (Ways::of(at, motion), at.aside.disagreement);
         Ways { ahead: e * (ways.round + cosine * apart), left: e * (sine * apart), round: e * ways.ahead * 0.5 }

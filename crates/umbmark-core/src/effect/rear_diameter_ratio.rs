@@ -2,7 +2,7 @@
 
 use super::rollers::Ways;
 use super::words::{either, percent};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -47,7 +47,7 @@ impl Effect for RearDiameterRatio {
 
 impl BodyLaw for RearDiameterRatio {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let ways = Ways::of(at, motion);
         let more = (p[0] - 1.0) / (p[0] + 2.0);
         let (fronts, rear) = (-more, more * 2.0);

@@ -1,7 +1,7 @@
 //! The rear one of two trucks, if its wheels differ from those of the front one.
 
 use super::words::{either, percent};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, WheelLaw};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here, WheelLaw};
 use crate::drive::{DriveKind, DriveKinds, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -54,7 +54,7 @@ impl Effect for RearTruck {
 
 impl WheelLaw for RearTruck {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         if at.truck > 0.0 {
             let left = p[2] * 2.0 / (p[0] + 1.0);
             travel.left *= left;
@@ -65,7 +65,7 @@ impl WheelLaw for RearTruck {
 
 impl BodyLaw for RearTruck {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         if at.truck > 0.0 {
             motion.rotation /= p[1];
         }

@@ -1,7 +1,7 @@
 //! The mean diameter of wheels with rollers.
 
 use super::words::mm;
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -36,7 +36,7 @@ impl Effect for RollerScale {
 
 impl BodyLaw for RollerScale {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], _at: &Here<T>, motion: &mut Displacement2<T>) {
         motion.forward *= p[0];
         motion.sideways *= p[0];
         motion.rotation *= p[0];

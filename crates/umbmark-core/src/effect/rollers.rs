@@ -1,6 +1,6 @@
 //! What laws of wheels with rollers have in common: the motion of the base as ways of its wheels.
 
-use super::Context;
+use super::Here;
 use super::words::{either, mm, percent};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
@@ -14,13 +14,13 @@ pub(super) struct Ways<T> {
 
 impl<T: Real> Ways<T> {
     #[inline(always)]
-    pub fn of(at: &Context<T>, motion: &Displacement2<T>) -> Ways<T> {
+    pub fn of(at: &Here<T>, motion: &Displacement2<T>) -> Ways<T> {
         Ways { ahead: motion.forward, left: motion.sideways, round: motion.rotation * (0.5 * at.wheelbase) }
     }
 
     /// Adds these ways to a motion.
     #[inline(always)]
-    pub fn add_to(self, at: &Context<T>, motion: &mut Displacement2<T>) {
+    pub fn add_to(self, at: &Here<T>, motion: &mut Displacement2<T>) {
         motion.forward += self.ahead;
         motion.sideways += self.left;
         // Where nothing is known of the robot, nothing turns it.
@@ -39,7 +39,7 @@ pub(super) fn share<T: Real>(ratio: T) -> T {
 /// How much the sizes of four omni wheels differ across the base: that of the two wheels of this ratio, which stand farthest apart, over the sine or cosine
 /// of their direction.
 #[inline(always)]
-pub(super) fn share_of_omni_wheels<T: Real>(ratio: T, at: &Context<T>) -> T {
+pub(super) fn share_of_omni_wheels<T: Real>(ratio: T, at: &Here<T>) -> T {
     share(ratio) * (1.0 / libm::sqrt(0.5 + 0.5 * libm::fabs(at.wheel_layout[0])))
 }
 

@@ -1,7 +1,7 @@
 //! Diameters of the right wheels of a mecanum drive beside those of the left ones.
 
 use super::rollers::{self, Ways, share};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -44,7 +44,7 @@ impl Effect for SideDiameterRatio {
 
 impl BodyLaw for SideDiameterRatio {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let (e, ways) = (share(p[0]), Ways::of(at, motion));
         Ways { ahead: e * ways.round, left: e * at.aside.disagreement, round: e * ways.ahead }.add_to(at, motion);
     }

@@ -1,7 +1,7 @@
 //! Turning that is lost while a base on rollers drives to the side.
 
 use super::words::{deg, either};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::{About, ActsOn, BodyLaw, Effect, Entry, Here, at_work};
 use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -51,7 +51,7 @@ impl Effect for SidewaysTurnSlip {
 
 impl BodyLaw for SidewaysTurnSlip {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let left = at.aside.speed.abs();
         let all = left + at.turn_rate.abs() * (0.5 * at.wheelbase);
         if all > 0.0 {

@@ -427,13 +427,15 @@ fn each_number_acts_linearly_where_the_effect_does_nothing() {
     }
 }
 
+/// A place in the room, with nothing at zero that an effect may depend on.
+fn there() -> Pose2 {
+    Pose2::new(2.0, -1.5, 1.0)
+}
+
 /// In a turn and on the first leg, with nothing at zero that an effect may depend on.
 fn contexts() -> [Context; 2] {
     let turn = Context {
         aside: Aside { way: 3e-3, disagreement: -2e-3, speed: 0.15 },
-        heading: 1.0,
-        x: 2.0,
-        y: -1.5,
         duration: 0.1,
         speed: 0.2,
         turn_rate: 0.9,
@@ -474,7 +476,7 @@ fn an_effect_says_whether_it_depends_on_where_and_how_the_robot_drives() {
         let depends = contexts().iter().any(|at| {
             // What moves a base to the side is a part of its motion.
             let anywhere = Context { aside: Aside { disagreement: 0.0, ..at.aside }, ..Context::default() };
-            chain.displacement(at, &travel) != chain.displacement(&anywhere, &travel)
+            chain.displacement(&at.at_pose(&there()), &travel) != chain.displacement(&anywhere.as_believed(), &travel)
         });
         assert_eq!(depends, model.varies(), "{}", entry.about.name);
     }
@@ -490,8 +492,9 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
     let mut stream = Stream::new(1, 2, 3);
     let (mut rolled, mut moved, mut shown, mut found) = ([travel; 2], [motion; 2], pose, pose);
     for ((at, rolled), moved) in contexts().iter().zip(&mut rolled).zip(&mut moved) {
-        wheels(values, at, rolled);
-        body(values, at, moved);
+        let at = at.at_pose(&there());
+        wheels(values, &at, rolled);
+        body(values, &at, moved);
     }
     let sight = Sight { time: 20.0, room: Some(Pose2::IDENTITY), ..Sight::default() };
     seen(values, &sight, &mut shown);

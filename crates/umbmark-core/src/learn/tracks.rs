@@ -5,7 +5,7 @@ use super::story::{Crossed, Error, Learnt, MOST_EFFECTS, Step};
 use crate::compare::tracks::{against_as_written, fixed, mounted};
 use crate::diagnose::tracks::{self, Added, Conclusion, Found, Search, Wanted};
 use crate::diagnose::{Diagnosis, Options, Reason, Verdict};
-use crate::effect::{Model, Part, find};
+use crate::effect::{Model, Part, find, parameter_of};
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit, fit_alone, is_possible, no_surer, told};
 use crate::evidence::{Estimate, Evidence, Fit, FitError};
 use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE, stands_for_the_reference};
@@ -158,9 +158,8 @@ fn shown(observed: &Observed, model: &Model) -> Result<Vec<&'static str>, FitErr
 /// Whether every size of a model may be zero: its 95 % interval holds the value without effect.
 fn is_nominal(fitted: &Fitted) -> bool {
     let may_be_zero = |own: &Estimate| {
-        let parameters = find(own.effect).ok().map(|entry| entry.about.parameters);
-        let parameter = parameters.and_then(|all| all.iter().find(|parameter| parameter.name == own.parameter));
-        let nothing = parameter.map(|parameter| parameter.default.resolve(fitted.model.robot()));
+        let nothing =
+            parameter_of(own.effect, own.parameter).map(|parameter| parameter.default.resolve(fitted.model.robot()));
         nothing.zip(own.interval(0.95)).is_some_and(|(nothing, interval)| interval.contains(nothing))
     };
     estimates(fitted).iter().all(may_be_zero)

@@ -2,7 +2,7 @@
 
 use super::track::Track;
 use crate::drive::{LinkReading, WheelTravel};
-use crate::effect::{Model, ModelError};
+use crate::effect::{Context, Model, ModelError};
 use crate::engine::{ConvoyStep, Floor, Predicted};
 use crate::geometry::{Displacement2, Pose2};
 use crate::path::{Direction, Path};
@@ -13,7 +13,7 @@ impl Track {
     /// If they depend on the place in the room, the path is the predicted one; otherwise it is that of the believed travel.
     pub fn check(&self, model: &Model) -> Result<(), ModelError> {
         if !model.has_formulas() || !model.reads_place() {
-            return model.check_along(&self.contexts);
+            return model.check_along(self.contexts.iter().map(Context::as_believed));
         }
         let chain = model.chain();
         if let Some(convoy) = &self.convoy {
@@ -25,7 +25,7 @@ impl Track {
         let mut pose = self.start(&chain);
         for (travel, at) in self.travel.iter().zip(&self.contexts) {
             let here = at.at_pose(&pose);
-            model.check_along([&here])?;
+            model.check_along([here])?;
             pose.advance(&chain.displacement(&here, travel));
         }
         Ok(())
@@ -50,7 +50,7 @@ struct Checked<'a> {
 impl Floor<f64> for Checked<'_> {
     fn moved(&mut self, step: &ConvoyStep, truck: usize, believed: WheelTravel, real: &Pose2) -> Displacement2 {
         if self.found.is_ok() {
-            self.found = self.model.check_along([&step.contexts[truck].at_pose(real)]);
+            self.found = self.model.check_along([step.contexts[truck].at_pose(real)]);
         }
         self.floor.moved(step, truck, believed, real)
     }

@@ -89,14 +89,14 @@ pub struct DetectableSize {
     pub size: Option<f64>,
 }
 
-/// An effect that these runs would not show, and that would bias what is fitted.
+/// An effect that the model lacks, of a size that these runs allow, that would bias what is fitted.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Confounder {
     /// The effect.
     pub effect: &'static str,
     /// The parameter that has the size.
     pub parameter: &'static str,
-    /// The size, in the unit of the parameter: the usual one, or the minimum detectable one where that is smaller.
+    /// The size, in the unit of the parameter: as these runs show it, else the usual one, or the minimum detectable one where that is smaller.
     pub size: f64,
     /// The fitted numbers that it would move out of their intervals, by more than a tenth of their usual size.
     pub biases: Vec<Bias>,
@@ -309,7 +309,7 @@ pub struct Diagnosis {
     pub minimum_detectable: Keyed<Option<f64>>,
     /// The same for each parameter.
     pub minimum_detectable_sizes: Vec<DetectableSize>,
-    /// Effects that these runs would not show and that would bias the first numbers of the model, the worst first.
+    /// Effects that the model lacks, of sizes that these runs allow, that would bias its first numbers, the worst first.
     pub confounders: Vec<Confounder>,
     /// What to measure next, the most informative per minute first.
     pub next_experiments: Vec<Experiment>,

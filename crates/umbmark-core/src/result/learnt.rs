@@ -101,7 +101,7 @@ pub struct Learnt {
     pub verdict: &'static str,
     /// A missing effect that is not in the catalogue; null if there is none.
     pub unlisted: Option<Unlisted>,
-    /// Effects that these runs would not show and that would bias the first numbers of the model, the worst first.
+    /// Effects that the model lacks, of sizes that these runs allow, that would bias its first numbers, the worst first.
     pub confounders: Vec<Confounder>,
     /// What to measure next, the most informative per minute first.
     pub next_experiments: Vec<Experiment>,

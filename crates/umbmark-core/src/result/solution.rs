@@ -94,7 +94,7 @@ pub struct Solution {
     pub next: Vec<String>,
     /// What these runs do not show of the robot: effects that become numbers of it.
     pub not_shown: Vec<&'static str>,
-    /// Effects that these runs would not show and that would bias the first numbers of the model, the worst first.
+    /// Effects that the model lacks, of sizes that these runs allow, that would bias its first numbers, the worst first.
     pub confounders: Vec<Confounder>,
     /// Why the verdict is not "explained", a sentence each.
     pub reasons: Vec<String>,

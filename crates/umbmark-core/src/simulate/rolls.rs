@@ -4,7 +4,7 @@
 //! each effect is applied to all of them at once.
 
 use crate::drive::WheelTravel;
-use crate::effect::{Chain, Context};
+use crate::effect::{Chain, Here};
 use crate::geometry::Displacement2;
 
 /// The kind of a piece of travel.
@@ -44,7 +44,7 @@ impl Rolls {
     }
 
     /// Computes true travel and motion of all pending pieces.
-    pub(super) fn work_out(&mut self, chain: &Chain<f64>, at: &Context) {
+    pub(super) fn work_out(&mut self, chain: &Chain<f64>, at: &Here) {
         chain.change_wheels(at, &mut self.travel);
         for (travel, kind) in self.travel.iter_mut().zip(&self.kind) {
             if let Roll::Bump(lost) = kind {

@@ -150,7 +150,8 @@ impl Truth {
 
     fn refresh(&mut self) {
         self.whole.clear();
-        self.rotation_per_metre = self.chain.body(&self.anywhere, &WheelTravel { left: -0.5, right: 0.5 }).rotation;
+        self.rotation_per_metre =
+            self.chain.body(&self.anywhere.as_believed(), &WheelTravel { left: -0.5, right: 0.5 }).rotation;
         let variance = variance(&self.random, &WheelTravel { left: 1.0, right: 1.0 });
         self.noisy = variance != WheelVariance::default();
         self.varies = self.random.iter().any(|part| part.effect.varies(&part.values));
@@ -208,14 +209,13 @@ impl Truth {
         believed: &WheelTravel,
         lost: &WheelTravel,
     ) -> Displacement2 {
-        let here;
-        let at = if self.varies {
+        let (driven, at) = if self.varies {
             let session_distance = self.trucks_drove + at.session_distance;
-            here = Context { run: self.trucks_run, session_distance, ..at.at_pose(real) };
-            &here
+            (Context { run: self.trucks_run, session_distance, ..*at }, *real)
         } else {
-            &self.anywhere
+            (self.anywhere, Pose2::IDENTITY)
         };
+        let at = &driven.at_pose(&at);
         let mut travel = self.chain.wheel_travel(at, believed);
         if self.noisy {
             let variance = variance(&self.random, &travel);
@@ -272,7 +272,7 @@ impl Truth {
 
     /// What moves the robot while its counters stand.
     fn move_on_at_rest(&mut self, at: &Context) {
-        let motion = self.chain.displacement(at, &WheelTravel::default());
+        let motion = self.chain.displacement(&self.way.here(at), &WheelTravel::default());
         if self.varies && motion != Displacement2::NONE {
             self.way.advance(&motion);
             self.pieces.push(&Piece { motion, noise: Noise::None });
@@ -337,7 +337,7 @@ impl Truth {
 
     /// Turns all pending travel into pieces of motion.
     fn make_pieces(&mut self) {
-        self.rolls.work_out(&self.chain, &self.anywhere);
+        self.rolls.work_out(&self.chain, &self.anywhere.as_believed());
         self.draws.resize(if self.noisy { self.rolls.stretches() } else { 0 }, [0.0; 3]);
         self.noise.normals(self.draws.as_flattened_mut());
         let mut draws = self.draws.iter();
@@ -365,6 +365,7 @@ impl Truth {
     fn roll_in_pieces(&mut self, share: f64) {
         let (mut rolled, mut moved) = (WheelTravel { left: 0.0, right: 0.0 }, Displacement2::NONE);
         while let Some((at, believed)) = self.way.until(share) {
+            let at = self.way.here(&at);
             let travel = self.chain.wheel_travel(&at, &believed);
             let motion = self.chain.body(&at, &travel);
             self.way.advance(&motion);
@@ -410,8 +411,9 @@ impl Truth {
     fn find_whole_diffusion(&mut self) -> usize {
         let commanded = self.commanded;
         self.whole.iter().position(|(travel, _)| *travel == commanded).unwrap_or_else(|| {
-            let travel = self.chain.wheel_travel(&self.anywhere, &commanded);
-            self.whole.push((commanded, self.diffusion(&travel, &self.chain.body(&self.anywhere, &travel))));
+            let travel = self.chain.wheel_travel(&self.anywhere.as_believed(), &commanded);
+            self.whole
+                .push((commanded, self.diffusion(&travel, &self.chain.body(&self.anywhere.as_believed(), &travel))));
             self.whole.len() - 1
         })
     }
@@ -421,7 +423,11 @@ impl Truth {
         if !self.in_pieces() {
             return self.rolls.push(WheelTravel::default(), Roll::Bump(travel));
         }
-        let motion = if self.slides { self.bump_across(&travel) } else { self.chain.body(&self.way.moment(), &travel) };
+        let motion = if self.slides {
+            self.bump_across(&travel)
+        } else {
+            self.chain.body(&self.way.here(&self.way.moment()), &travel)
+        };
         self.way.advance(&motion);
         self.pieces.push(&Piece { motion, noise: Noise::None });
     }
@@ -432,7 +438,7 @@ impl Truth {
         let Displacement2 { forward, rotation, .. } = self.drive.displacement(lost);
         let aside = Aside { way: sine * forward, ..Aside::NONE };
         let travel = self.drive.wheel_travel(cosine * forward, rotation);
-        self.chain.body(&Context { aside, ..self.way.moment() }, &travel)
+        self.chain.body(&self.way.here(&Context { aside, ..self.way.moment() }), &travel)
     }
 
     /// The true pose.
@@ -510,7 +516,8 @@ mod tests {
         simulator.open(&mut truth, 7, 0);
         for direction in [Direction::Ccw, Direction::Ccw, Direction::Cw] {
             simulator.run(&mut truth, direction, TestKind::Bumps);
-            let (seen, real) = (truth.way.moment(), truth.pose());
+            let moment = truth.way.moment();
+            let (seen, real) = (truth.way.here(&moment).pose(), truth.pose());
             assert!(libm::hypot(real.x, real.y) > 0.01, "it errs: {real:?}");
             for (seen, real) in [(seen.x, real.x), (seen.y, real.y), (seen.heading, real.heading)] {
                 assert!((seen - real).abs() < 1e-11, "{seen} {real}");

@@ -2,7 +2,7 @@
 
 use super::Leg;
 use crate::drive::{Robot, WheelTravel};
-use crate::effect::{Aside, Context, Progress, RunContext, Stretch};
+use crate::effect::{Aside, Context, Here, Progress, RunContext, Stretch};
 use crate::geometry::{Displacement2, Pose2};
 use crate::path::{Direction, Pieces, SpeedProfile};
 
@@ -61,7 +61,7 @@ impl Way {
 
     /// Stands still \[s\], by its counts.
     pub(super) fn rest(&mut self, duration: f64) -> Context {
-        self.progress.piece(&WheelTravel::default(), duration, [0.0; 2], [0.0; 2]).at_pose(&self.pose)
+        self.progress.piece(&WheelTravel::default(), duration, [0.0; 2], [0.0; 2])
     }
 
     /// Stands still until some time after START, if it does not stand there already.
@@ -89,8 +89,8 @@ impl Way {
         let piece = self.pieces.until(share)?;
         let aside = Aside { way: piece.left, speed: piece.speed_left, ..Aside::NONE };
         let at = self.progress.piece_aside(&piece.travel, aside, piece.duration, piece.from, piece.to);
-        self.at = at.at_pose(&self.pose);
-        Some((self.at, piece.travel))
+        self.at = at;
+        Some((at, piece.travel))
     }
 
     /// This moment of the way, of no length and no duration.
@@ -101,8 +101,13 @@ impl Way {
             wheel_rotation: [0.0; 2],
             wheel_travel: [0.0; 2],
             aside: Aside::NONE,
-            ..self.at.at_pose(&self.pose)
+            ..self.at
         }
+    }
+
+    /// Where the robot truly is, for a piece of its way.
+    pub(super) fn here<'a>(&self, at: &'a Context) -> Here<'a> {
+        at.at_pose(&self.pose)
     }
 
     /// Applies a true motion of the robot.
@@ -160,7 +165,14 @@ mod tests {
             assert_eq!(driven.len(), track.contexts().len());
             for (driven, told) in driven.iter().zip(track.contexts()) {
                 let numbers = |at: &Context| {
-                    let along = [at.time, at.distance, at.since_turn, at.heading, at.wheel_angle[0], at.wheel_angle[1]];
+                    let along = [
+                        at.time,
+                        at.distance,
+                        at.since_turn,
+                        at.believed_heading,
+                        at.wheel_angle[0],
+                        at.wheel_angle[1],
+                    ];
                     let rates =
                         [at.duration, at.speed, at.turn_rate, at.speed_change[0], at.speed_change[1], at.length];
                     let senses = [

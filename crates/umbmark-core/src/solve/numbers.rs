@@ -1,9 +1,7 @@
 //! From the values of a model to the numbers of a robot.
 
 use super::off::Off;
-use super::others::Other;
 use crate::calibrate::{self, Correction, Method};
-use crate::diagnose::Reason;
 use crate::effect::Model;
 use crate::evidence::Estimate;
 use crate::learn::Learnt;
@@ -30,12 +28,12 @@ pub struct Change {
 
 /// The numbers that a model changes, with intervals that hold with probability 1 - `size`, and whether all of them together differ
 /// from the old ones by more than chance (an F test of that size).
-pub(super) fn of(learnt: &Learnt, others: &[Other], size: f64) -> (Vec<Change>, bool) {
+pub(super) fn of(learnt: &Learnt, size: f64) -> (Vec<Change>, bool) {
     let model = &learnt.model;
     let drive = &model.robot().drive;
     let values = Correction::of(model).values();
     let Ok(corrected) = drive.corrected(values) else { return (Vec::new(), false) };
-    let first = first(learnt, others);
+    let first = First::of(model, &learnt.diagnosis.fitted, &learnt.diagnosis.correlations);
     let (slopes, freedom) = (first.slopes(model), first.freedom().unwrap_or(0.0));
     let First { shown, covariance } = first;
     let covariance = known(covariance);
@@ -58,8 +56,8 @@ pub(super) fn of(learnt: &Learnt, others: &[Other], size: f64) -> (Vec<Change>, 
 }
 
 /// The three ratios of a differential drive as one more estimate; `None` where none was fitted.
-pub(super) fn estimate(learnt: &Learnt, others: &[Other]) -> Option<calibrate::Estimate> {
-    let first = first(learnt, others);
+pub(super) fn estimate(learnt: &Learnt) -> Option<calibrate::Estimate> {
+    let first = First::of(&learnt.model, &learnt.diagnosis.fitted, &learnt.diagnosis.correlations);
     let freedom = first.freedom()?;
     let First { shown, covariance } = first;
     let covariance = known(covariance).map(|covariance| {
@@ -118,27 +116,6 @@ impl<'a> First<'a> {
         let of = |place: usize| DVector::from_iterator(slopes.len(), slopes.iter().map(|slope| slope[place]));
         (0..model.robot().drive.values().len()).map(of).collect()
     }
-}
-
-/// The first effects of what was learnt.
-///
-/// Where another effect would do, the distance d of its values is one more error, L d dᵀ, with L its likelihood beside the one that was added.
-///
-/// Source: Buckland, Burnham & Augustin (1997), Biometrics 53, 603: the variance of an estimate after a model was selected.
-fn first<'a>(learnt: &'a Learnt, others: &[Other]) -> First<'a> {
-    let mut first = First::of(&learnt.model, &learnt.diagnosis.fitted, &learnt.diagnosis.correlations);
-    for other in others {
-        let off = DVector::from_iterator(first.shown.len(), first.shown.iter().map(|(which, _)| other.off[*which]));
-        first.covariance.ger(other.likelihood, &off, &off, 1.0);
-    }
-    // Where a value differs from run to run, it is the mean over the runs.
-    for reason in &learnt.diagnosis.reasons {
-        if let Reason::RunsDiffer(unequal) = reason {
-            let place = first.shown.iter().position(|(_, estimate)| estimate.effect == unequal.effect);
-            place.into_iter().for_each(|place| first.covariance[(place, place)] += unequal.variance());
-        }
-    }
-    first
 }
 
 /// A covariance; `None` where some standard error is not known.

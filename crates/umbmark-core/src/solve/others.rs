@@ -5,52 +5,111 @@
 //! but lowers no error of runs left out, is not added, and may change the numbers all the same. How far the class reaches in these runs, the
 //! likelihood of the whole model says.
 
-use crate::calibrate::Correction;
+use crate::diagnose::{Diagnosis, Reason};
 use crate::effect::Model;
 use crate::evidence::tracks::Alone;
-use crate::evidence::{AnyEvidence, Evidence, tracks};
+use crate::evidence::{AnyEvidence, Estimate, Evidence, tracks};
 use crate::learn::{Learnt, criteria_of_ends};
+use nalgebra::{DMatrix, DVector};
 
-/// Less likely effects are left out.
-const LEAST_LIKELY: f64 = 1e-3;
+/// Effects of less weight are left out.
+const LEAST: f64 = 1e-3;
 
 /// Another effect in place of one that was added, or beside all of them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Other {
     /// The one in whose place it stands; `None` for one that is significant and was not added.
     pub added: Option<&'static str>,
     /// The other one.
     pub effect: &'static str,
-    /// By how much the values of the robot's first effects differ with it.
-    pub off: [f64; 3],
-    /// How likely the runs are with it, relative to the model that was learnt: exp(-ΔAICc/2), at most 1.
+    /// By how much each fitted number of the model differs with it, in the order of `Diagnosis::fitted`; 0 for a number of the effect that it
+    /// replaces.
+    pub off: Vec<f64>,
+    /// Its Akaike weight among the model that was learnt and all the others: exp(-AICc/2) over their sum.
     ///
-    /// Source: Akaike weights; Burnham & Anderson (2002), Model Selection and Multimodel Inference, 2.9.
-    pub likelihood: f64,
+    /// Source: Burnham & Anderson (2002), Model Selection and Multimodel Inference, 2.9.
+    pub weight: f64,
 }
 
 /// The other effects of each class, and those that are significant at this size of their test; those with which the model cannot be fitted,
-/// or is much less likely, are left out.
+/// or of hardly any weight, are left out.
 pub(super) fn of(evidence: &AnyEvidence, learnt: &Learnt, size: f64) -> Vec<Other> {
     let classes = learnt.steps.iter().filter_map(|step| Some((step.added?, &step.class)));
     let in_place = classes.flat_map(|(added, class)| class.iter().map(move |effect| (Some(added), *effect)));
     let significant = learnt.diagnosis.ranking.iter().filter(|suspect| suspect.p_adjusted <= size);
     let beside = significant.flat_map(|suspect| suspect.class.iter().map(|effect| (None, *effect)));
     let has = |effect: &str| learnt.model.parts().iter().any(|part| part.effect.name() == effect);
-    let pairs: Vec<_> = in_place.chain(beside).filter(|(_, effect)| !has(effect)).collect();
+    let mut pairs: Vec<(Option<&str>, &str)> = Vec::new();
+    for pair in in_place.chain(beside).filter(|(_, effect)| !has(effect)) {
+        if !pairs.contains(&pair) {
+            pairs.push(pair);
+        }
+    }
     if pairs.is_empty() {
         return Vec::new();
     }
     let Some((_, aicc)) = fitted(evidence, &learnt.model) else { return Vec::new() };
-    let values = Correction::of(&learnt.model).values();
     let other = |(added, effect)| {
-        let (other, other_aicc) = fitted(evidence, &with_other(&learnt.model, added, effect)?)?;
-        let off = Correction::of(&other).values();
-        let likelihood = libm::exp(0.5 * (aicc - other_aicc)).min(1.0);
-        let off = [0, 1, 2].map(|which| off[which] - values[which]);
-        (likelihood >= LEAST_LIKELY).then_some(Other { added, effect, off, likelihood })
+        let (other, aicc) = fitted(evidence, &with_other(&learnt.model, added, effect)?)?;
+        let off = |own: &Estimate| value_of(&other, own).map_or(0.0, |value| value - own.value);
+        let off = learnt.diagnosis.fitted.iter().map(off).collect();
+        Some((Other { added, effect, off, weight: 0.0 }, aicc))
     };
-    pairs.into_iter().filter_map(other).collect()
+    let mut others: Vec<(Other, f64)> = pairs.into_iter().filter_map(other).collect();
+    let least = others.iter().fold(aicc, |least, (_, own)| least.min(*own));
+    let likelihood = |aicc: f64| libm::exp(0.5 * (least - aicc));
+    let sum: f64 = likelihood(aicc) + others.iter().map(|(_, own)| likelihood(*own)).sum::<f64>();
+    others.iter_mut().for_each(|(other, own)| other.weight = likelihood(*own) / sum);
+    others.into_iter().map(|(other, _)| other).filter(|other| other.weight >= LEAST).collect()
+}
+
+/// The value of a number in a model that has it.
+fn value_of(model: &Model, number: &Estimate) -> Option<f64> {
+    model.values().nth(model.place_of(number.effect, number.parameter)?)
+}
+
+/// Makes the estimates of what was learnt as uncertain as other effects leave them.
+///
+/// Where another effect of weight w would do, the distance d of its values is one more error, w d dᵀ. Where a value differs from run to run,
+/// it is the mean over the runs. What an effect that is left out may do is told where it is beyond the wider interval too.
+///
+/// Source: Buckland, Burnham & Augustin (1997), Biometrics 53, 603: the variance of an estimate after a model was selected.
+pub(super) fn widen(diagnosis: &mut Diagnosis, others: &[Other], level: f64) {
+    let count = diagnosis.fitted.len();
+    let mut added = DMatrix::zeros(count, count);
+    for other in others {
+        let off = DVector::from_column_slice(&other.off);
+        added.ger(other.weight, &off, &off, 1.0);
+    }
+    for reason in &diagnosis.reasons {
+        if let Reason::RunsDiffer(unequal) = reason {
+            let place = diagnosis.fitted.iter().position(|own| own.effect == unequal.effect);
+            place.into_iter().for_each(|place| added[(place, place)] += unequal.variance());
+        }
+    }
+    let before: Vec<f64> = diagnosis.fitted.iter().map(|own| own.standard_error).collect();
+    for (place, own) in diagnosis.fitted.iter_mut().enumerate().filter(|(place, _)| added[(*place, *place)] > 0.0) {
+        own.standard_error = (own.standard_error * own.standard_error + added[(place, place)]).sqrt();
+    }
+    let after: Vec<f64> = diagnosis.fitted.iter().map(|own| own.standard_error).collect();
+    for (i, row) in diagnosis.correlations.iter_mut().enumerate() {
+        for (j, correlation) in row.iter_mut().enumerate().filter(|(j, _)| *j != i) {
+            let product = after[i] * after[j];
+            if product > 0.0 && product.is_finite() {
+                *correlation = (*correlation * before[i] * before[j] + added[(i, j)]) / product;
+            }
+        }
+    }
+    for confounder in &mut diagnosis.confounders {
+        for bias in &mut confounder.biases {
+            let own = diagnosis.fitted.iter().find(|own| (own.effect, own.parameter) == (bias.effect, bias.parameter));
+            let interval = own.and_then(|own| own.interval(level));
+            bias.half_width = interval.map_or(bias.half_width, |interval| 0.5 * (interval.high - interval.low));
+        }
+        confounder.biases.retain(|bias| bias.bias > bias.half_width);
+    }
+    diagnosis.confounders.retain(|confounder| !confounder.biases.is_empty());
+    diagnosis.confounders.sort_by(|a, b| b.worst().total_cmp(&a.worst()));
 }
 
 fn with_other(model: &Model, added: Option<&str>, effect: &str) -> Option<Model> {
@@ -64,16 +123,17 @@ fn with_other(model: &Model, added: Option<&str>, effect: &str) -> Option<Model>
 
 /// The likeliest values of a model, and its AICc.
 fn fitted(evidence: &AnyEvidence, model: &Model) -> Option<(Model, f64)> {
-    match evidence {
+    let (model, aicc) = match evidence {
         AnyEvidence::Ends(ends) => {
             let model = ends.fit(model).ok()?.model;
             let [aicc, _] = criteria_of_ends(ends, &model)?;
-            Some((model, aicc))
+            (model, aicc)
         }
         AnyEvidence::Tracks(observed) => {
             let alone = Alone::new(tracks::fit(observed, model).ok()?);
             let (aicc, ..) = alone.criteria();
-            Some((alone.into_fitted().model, aicc))
+            (alone.into_fitted().model, aicc)
         }
-    }
+    };
+    aicc.is_finite().then_some((model, aicc))
 }

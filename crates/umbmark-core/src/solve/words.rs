@@ -96,6 +96,9 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
     if !solution.needed {
         said.push(match off.known.is_empty() && is_chance(off.driven) {
             true => "That is no more than chance makes: its numbers are right, and nothing is to be written.".into(),
+            false if off.driven - off.with_numbers > TOLD * off.driven => {
+                "These runs do not tell whether its numbers are right: nothing is to be written.".into()
+            }
             false => "Its numbers are right: nothing is to be written.".into(),
         });
     } else {

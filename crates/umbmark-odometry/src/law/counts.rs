@@ -2,7 +2,7 @@
 
 use super::grip::turn_course;
 use super::{BodyLaw, WheelLaw};
-use crate::context::{Context, TIME_CONSTANTS};
+use crate::context::{Here, TIME_CONSTANTS};
 use crate::geometry::{Displacement2, Real};
 use crate::travel::WheelTravel;
 
@@ -13,7 +13,7 @@ pub struct WheelLag;
 
 impl WheelLaw for WheelLag {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         if at.recorded {
             let weights = among_time_constants(p[1]);
             travel.left -= p[0] * weighted(&weights, &at.falls_behind[0]);
@@ -54,7 +54,7 @@ pub struct MissedCounts;
 
 impl WheelLaw for MissedCounts {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         travel.left *= p[0] * above(at.wheel_speed[0], p[2]) + 1.0;
         travel.right *= p[1] * above(at.wheel_speed[1], p[2]) + 1.0;
     }
@@ -74,7 +74,7 @@ pub struct EncoderSkew;
 
 impl WheelLaw for EncoderSkew {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         travel.right -= p[0] * at.speed_change[1];
     }
 }
@@ -86,7 +86,7 @@ pub struct EncoderSampling;
 
 impl BodyLaw for EncoderSampling {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         if !at.recorded {
             turn_course(motion, p[0] * (0.5 * at.turn_rate));
         }
@@ -96,7 +96,7 @@ impl BodyLaw for EncoderSampling {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::context::{Nominal, Place, Progress};
+    use crate::context::{Context, Nominal, Place, Progress};
 
     /// Oracle: the lag followed with its own time constant, piece by piece.
     #[test]
@@ -120,7 +120,7 @@ mod tests {
                 let believed = WheelTravel { left: told[0], right: told[1] };
                 let at = progress.piece(&believed, 0.01, [0.0; 2], [0.0; 2]);
                 let mut travel = believed;
-                WheelLag::wheels(&[1.0, time], &at, &mut travel);
+                WheelLag::wheels(&[1.0, time], &at.as_believed(), &mut travel);
                 law = [law[0] + told[0] - travel.left, law[1] + told[1] - travel.right];
                 for wheel in 0..2 {
                     let gone = 1.0 - libm::exp(-0.01 / time);
@@ -137,9 +137,9 @@ mod tests {
     fn moves_that_are_only_planned_are_followed_to_their_end() {
         let at = Context { falls_behind: [[0.1; TIME_CONSTANTS.len()]; 2], ..Context::default() };
         let mut travel = WheelTravel { left: 0.3, right: 0.4 };
-        WheelLag::wheels(&[1.0, 0.08], &at, &mut travel);
+        WheelLag::wheels(&[1.0, 0.08], &at.as_believed(), &mut travel);
         assert_eq!((travel.left, travel.right), (0.3, 0.4));
-        WheelLag::wheels(&[1.0, 0.08], &Context { recorded: true, ..at }, &mut travel);
+        WheelLag::wheels(&[1.0, 0.08], &Context { recorded: true, ..at }.as_believed(), &mut travel);
         assert!((travel.left - 0.2).abs() < 1e-12 && (travel.right - 0.3).abs() < 1e-12);
     }
 }

@@ -1,7 +1,7 @@
 //! Laws of the floor.
 
 use super::{BodyLaw, WheelLaw};
-use crate::context::Context;
+use crate::context::Here;
 use crate::geometry::{Displacement2, Real};
 use crate::travel::WheelTravel;
 
@@ -12,7 +12,7 @@ pub struct FloorSlope;
 
 impl BodyLaw for FloorSlope {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         drift(p, at, motion);
         let turned = (at.turn_rate * at.duration).abs();
         let (sine, cosine) = mean_heading(at, motion).sine_cosine();
@@ -23,14 +23,14 @@ impl BodyLaw for FloorSlope {
 
 /// Adds a drift that is fixed in the room, (p₀, p₁) per metre driven.
 #[inline(always)]
-pub(super) fn drift<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+pub(super) fn drift<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
     let (sine, cosine) = mean_heading(at, motion).sine_cosine();
     motion.forward += (cosine * p[0] + sine * p[1]) * at.length;
     motion.sideways += (cosine * p[1] - sine * p[0]) * at.length;
 }
 
 #[inline(always)]
-fn mean_heading<T: Real>(at: &Context<T>, motion: &Displacement2<T>) -> T {
+fn mean_heading<T: Real>(at: &Here<T>, motion: &Displacement2<T>) -> T {
     at.heading + motion.rotation * 0.5
 }
 
@@ -41,7 +41,7 @@ pub struct FloorSlopeYaw;
 
 impl BodyLaw for FloorSlopeYaw {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let (sine, cosine) = (at.heading + motion.rotation * 0.5).sine_cosine();
         let turned = (at.turn_rate * at.duration).abs();
         motion.rotation += (p[0] * cosine + p[1] * sine) * at.length + (p[2] * cosine + p[3] * sine) * turned;
@@ -55,7 +55,7 @@ pub struct CarpetNap;
 
 impl BodyLaw for CarpetNap {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         drift(p, at, motion);
     }
 }
@@ -68,7 +68,7 @@ pub struct PlacedBumps;
 
 impl WheelLaw for PlacedBumps {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         if at.last_turn != 0.0 || at.turns_on_the_spot() {
             return;
         }

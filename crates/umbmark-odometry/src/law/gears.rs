@@ -1,7 +1,7 @@
 //! Laws of the gears of synchro drives.
 
 use super::BodyLaw;
-use crate::context::Context;
+use crate::context::Here;
 use crate::geometry::{Displacement2, Real};
 
 /// The ratio of true to nominal way; the steering has gears of its own and is not touched.
@@ -11,7 +11,7 @@ pub struct DriveScale;
 
 impl BodyLaw for DriveScale {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], _at: &Here<T>, motion: &mut Displacement2<T>) {
         motion.forward *= p[0];
     }
 }
@@ -23,7 +23,7 @@ pub struct SteerScale;
 
 impl BodyLaw for SteerScale {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], _at: &Here<T>, motion: &mut Displacement2<T>) {
         motion.rotation *= p[0];
     }
 }
@@ -35,7 +35,7 @@ pub struct SteerCoupling;
 
 impl BodyLaw for SteerCoupling {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], _at: &Here<T>, motion: &mut Displacement2<T>) {
         motion.rotation += p[0] * motion.forward;
     }
 }
@@ -47,7 +47,7 @@ pub struct ContactTrail;
 
 impl BodyLaw for ContactTrail {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], _at: &Here<T>, motion: &mut Displacement2<T>) {
         motion.forward += p[0] * motion.rotation;
     }
 }
@@ -59,7 +59,7 @@ pub struct BaseYaw;
 
 impl BodyLaw for BaseYaw {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let (sine, cosine) = (motion.rotation * 0.5 + at.believed_heading).sine_cosine();
         motion.rotation += (p[0] * cosine + p[1] * sine) * motion.forward;
     }

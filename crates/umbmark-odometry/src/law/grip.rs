@@ -1,7 +1,7 @@
 //! Laws of the contact with the floor.
 
 use super::{BodyLaw, WheelLaw, size};
-use crate::context::Context;
+use crate::context::Here;
 use crate::geometry::{Displacement2, Real};
 use crate::travel::WheelTravel;
 
@@ -12,7 +12,7 @@ pub struct Crab;
 
 impl BodyLaw for Crab {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], _at: &Here<T>, motion: &mut Displacement2<T>) {
         turn_course(motion, p[0]);
     }
 }
@@ -33,7 +33,7 @@ pub struct SpeedSlip;
 
 impl WheelLaw for SpeedSlip {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         slip(&mut travel.left, p[0], at, 0);
         slip(&mut travel.right, p[0], at, 1);
     }
@@ -41,7 +41,7 @@ impl WheelLaw for SpeedSlip {
 
 /// Takes k |v| of what a wheel rolls, v the speed of its rim.
 #[inline(always)]
-fn slip<T: Real>(rolled: &mut T, k: T, at: &Context<T>, wheel: usize) {
+fn slip<T: Real>(rolled: &mut T, k: T, at: &Here<T>, wheel: usize) {
     *rolled *= -k * size(*rolled, at, wheel) * at.wheel_speed[wheel].abs() + 1.0;
 }
 
@@ -52,7 +52,7 @@ pub struct SpeedSlipLeft;
 
 impl WheelLaw for SpeedSlipLeft {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         slip(&mut travel.left, p[0], at, 0);
     }
 }
@@ -64,7 +64,7 @@ pub struct SpeedSlipRight;
 
 impl WheelLaw for SpeedSlipRight {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         slip(&mut travel.right, p[0], at, 1);
     }
 }
@@ -76,14 +76,14 @@ pub struct AccelerationSlip;
 
 impl WheelLaw for AccelerationSlip {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         travel.left *= -p[0] * gain(at, 0) + 1.0;
         travel.right *= -p[0] * gain(at, 1) + 1.0;
     }
 }
 
 /// Rate of change of the size of a wheel's speed \[m/s²\].
-fn gain<T>(at: &Context<T>, wheel: usize) -> f64 {
+fn gain<T>(at: &Here<T>, wheel: usize) -> f64 {
     if at.duration > 0.0 { at.speed_change[wheel] * at.wheel_speed[wheel].signum() / at.duration } else { 0.0 }
 }
 
@@ -94,7 +94,7 @@ pub struct TurnSlip;
 
 impl BodyLaw for TurnSlip {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         if at.turns_on_the_spot() {
             motion.rotation *= -p[0] + 1.0;
         }
@@ -108,7 +108,7 @@ pub struct TurnSlipRate;
 
 impl BodyLaw for TurnSlipRate {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         motion.rotation *= -p[0] * at.turn_rate.abs() + 1.0;
     }
 }
@@ -120,7 +120,7 @@ pub struct DirectionDependentWheelbase;
 
 impl BodyLaw for DirectionDependentWheelbase {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         if at.turn_rate != 0.0 {
             motion.rotation /= p[0] * (0.5 * at.turn_rate.signum()) + 1.0;
         }
@@ -134,7 +134,7 @@ pub struct CasterKick;
 
 impl BodyLaw for CasterKick {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         motion.rotation += p[0] * faded(at.since_turn, at.length, p[1]) * at.last_turn;
     }
 }
@@ -153,7 +153,7 @@ pub struct LegKick;
 
 impl BodyLaw for LegKick {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         // Counts that tremble in a turn on the spot are no way.
         if at.turn_rate.abs() * at.wheelbase > at.speed.abs() {
             return;

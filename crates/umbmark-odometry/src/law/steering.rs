@@ -1,7 +1,7 @@
 //! Laws of steered wheels.
 
 use super::BodyLaw;
-use crate::context::Context;
+use crate::context::Here;
 use crate::gearing::front_wheel;
 use crate::geometry::{Displacement2, Real};
 
@@ -12,14 +12,14 @@ pub struct FrontWheelZero;
 
 impl BodyLaw for FrontWheelZero {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         steer_farther(at, motion, p[0]);
     }
 }
 
 /// Turns the driven front wheel farther to the left in a motion of the axle that it makes.
 #[inline(always)]
-pub(super) fn steer_farther<T: Real>(at: &Context<T>, motion: &mut Displacement2<T>, farther: T) {
+pub(super) fn steer_farther<T: Real>(at: &Here<T>, motion: &mut Displacement2<T>, farther: T) {
     // A context without a robot has no front wheel.
     if at.axle_distance > 0.0 {
         let (ahead, across) = (motion.forward, motion.rotation * at.axle_distance);
@@ -38,7 +38,7 @@ pub struct FrontWheelGain;
 
 impl BodyLaw for FrontWheelGain {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         let (ahead, across) = (motion.forward, motion.rotation * at.axle_distance);
         let (f, a) = (ahead.value(), across.value());
         if f != 0.0 || a != 0.0 {
@@ -57,7 +57,7 @@ pub struct AxleDistance;
 
 impl BodyLaw for AxleDistance {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], _at: &Here<T>, motion: &mut Displacement2<T>) {
         motion.rotation /= p[0];
     }
 }
@@ -69,7 +69,7 @@ pub struct SteeringZero;
 
 impl BodyLaw for SteeringZero {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         if let Some(tangent) = steered(at, motion) {
             steer_on(at, motion, tangent, p[0]);
         }
@@ -81,7 +81,7 @@ const MAX_TANGENT: f64 = 5.8;
 
 /// The tangent of the steering angle of a motion; `None` for turns on the spot, and if the steering is unknown.
 #[inline(always)]
-pub(super) fn steered<T: Real>(at: &Context<T>, motion: &Displacement2<T>) -> Option<T> {
+pub(super) fn steered<T: Real>(at: &Here<T>, motion: &Displacement2<T>) -> Option<T> {
     let across = motion.rotation * at.axle_distance;
     let drives = at.axle_distance > 0.0 && across.value().abs() < MAX_TANGENT * motion.forward.value().abs();
     drives.then(|| across / motion.forward)
@@ -89,7 +89,7 @@ pub(super) fn steered<T: Real>(at: &Context<T>, motion: &Displacement2<T>) -> Op
 
 /// Turns the wheel, steered by an angle of this tangent, farther to the left: tan(δ + ε) = t + (1 + t²) tan ε/(1 - t tan ε).
 #[inline(always)]
-pub(super) fn steer_on<T: Real>(at: &Context<T>, motion: &mut Displacement2<T>, tangent: T, farther: T) {
+pub(super) fn steer_on<T: Real>(at: &Here<T>, motion: &mut Displacement2<T>, tangent: T, farther: T) {
     let (sine, cosine) = farther.sine_cosine();
     let added = (tangent * tangent + 1.0) * sine / (cosine - tangent * sine);
     motion.rotation += motion.forward * added / at.axle_distance;
@@ -102,7 +102,7 @@ pub struct SteeringGain;
 
 impl BodyLaw for SteeringGain {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         if let Some(tangent) = steered(at, motion) {
             let t = tangent.value();
             let angle = tangent.mapped(libm::atan(t), 1.0 / (1.0 + t * t));
@@ -118,7 +118,7 @@ pub struct Understeer;
 
 impl BodyLaw for Understeer {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], at: &Here<T>, motion: &mut Displacement2<T>) {
         if let Some(tangent) = steered(at, motion) {
             let acceleration = tangent * (at.speed * at.speed / at.axle_distance);
             steer_on(at, motion, tangent, -p[0] * acceleration);

@@ -1,7 +1,7 @@
 //! Laws of the wheels' shape, and their play.
 
 use super::{BodyLaw, WheelLaw, size};
-use crate::context::Context;
+use crate::context::Here;
 use crate::geometry::{Displacement2, Real};
 use crate::travel::WheelTravel;
 
@@ -12,7 +12,7 @@ pub struct WheelDiameterRatio;
 
 impl WheelLaw for WheelDiameterRatio {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], _at: &Here<T>, travel: &mut WheelTravel<T>) {
         let left = (p[0] + 1.0).recip() * 2.0;
         travel.left *= left;
         travel.right *= left * p[0];
@@ -26,7 +26,7 @@ pub struct Wheelbase;
 
 impl BodyLaw for Wheelbase {
     #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], _at: &Here<T>, motion: &mut Displacement2<T>) {
         motion.rotation /= p[0];
     }
 }
@@ -38,7 +38,7 @@ pub struct Scale;
 
 impl WheelLaw for Scale {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], _at: &Here<T>, travel: &mut WheelTravel<T>) {
         travel.left *= p[0];
         travel.right *= p[0];
     }
@@ -51,14 +51,14 @@ pub struct WheelEccentricityLeft;
 
 impl WheelLaw for WheelEccentricityLeft {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         travel.left += wave(p, at, 0);
     }
 }
 
 /// c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀) over a piece \[m\].
 #[inline(always)]
-pub(super) fn wave<T: Real>(p: &[T], at: &Context<T>, wheel: usize) -> T {
+pub(super) fn wave<T: Real>(p: &[T], at: &Here<T>, wheel: usize) -> T {
     let half = 0.5 * at.wheel_rotation[wheel];
     let (sine, cosine) = (at.wheel_angle[wheel] + half).sine_cosine();
     (p[1] * cosine - p[0] * sine) * (2.0 * half.sine_cosine().0)
@@ -71,7 +71,7 @@ pub struct WheelEccentricityRight;
 
 impl WheelLaw for WheelEccentricityRight {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         travel.right += wave(p, at, 1);
     }
 }
@@ -83,7 +83,7 @@ pub struct DiameterDrift;
 
 impl WheelLaw for DiameterDrift {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         let half = 0.5 * at.length;
         let way = settled(at.distance + half, p[3]);
         let d = p[0] * way + p[1] * (at.session_distance + half);
@@ -113,7 +113,7 @@ pub struct CentripetalLoad;
 
 impl WheelLaw for CentripetalLoad {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         // What knows no speed knows no wheelbase either.
         if at.wheel_speed == [0.0; 2] {
             return;
@@ -133,7 +133,7 @@ pub struct Backlash;
 
 impl WheelLaw for Backlash {
     #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         travel.left -= p[0] * at.reversed[0];
         travel.right -= p[0] * at.reversed[1];
     }

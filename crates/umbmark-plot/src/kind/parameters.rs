@@ -1,6 +1,6 @@
 //! The numbers of a model with their intervals.
 
-use umbmark_core::effect::{Model, find};
+use umbmark_core::effect::{Model, parameter_of};
 use umbmark_core::evidence::Estimate;
 use umbmark_core::stats::student_t_quantile;
 
@@ -63,8 +63,7 @@ struct Number {
 
 impl Number {
     fn new(estimate: &Estimate, model: &Model, level: f64) -> Number {
-        let of_effect = find(estimate.effect).ok();
-        let parameter = of_effect.and_then(|e| e.about.parameters.iter().find(|p| p.name == estimate.parameter));
+        let parameter = parameter_of(estimate.effect, estimate.parameter);
         let rest = parameter.map_or(0.0, |p| p.default.resolve(model.robot()));
         let departure = estimate.value - rest;
         let half = student_t_quantile(0.5 + 0.5 * level, estimate.degrees_of_freedom) * estimate.standard_error;

@@ -1,17 +1,18 @@
-//! What effects that the runs do not show would do to the first numbers of the model.
+//! What effects that the model lacks would do to its first numbers.
 
 use super::conclusion::surely;
 use super::examination::Examination;
 use crate::diagnose::confounder::{Bias, Confounder};
-use crate::effect::{ActsOn, find};
+use crate::effect::{ActsOn, parameter_of};
 use crate::evidence::Estimate;
 use crate::evidence::tracks::Projected;
+use nalgebra::DMatrix;
 
 /// A bias below this share of a number's usual size is not told, however narrow its interval.
 const MATTERS: f64 = 0.1;
 
-/// The effects of the robot and the floor that would move one of the first numbers of the model beyond its interval, unseen: the worst of them
-/// first. `fitted` is what is told of the model.
+/// The effects of the robot and the floor that may move one of the first numbers of the model beyond its interval: the worst of them first.
+/// `fitted` is what is told of the model.
 pub(super) fn confounders(exam: &Examination, fitted: &[Estimate], level: f64) -> Vec<Confounder> {
     let products = &exam.system.whole;
     let first = exam.fitted.model.robot().drive.first_effects();
@@ -22,19 +23,14 @@ pub(super) fn confounders(exam: &Examination, fitted: &[Estimate], level: f64) -
         }
         let projected = Projected::new(products, &exam.base(Some(index)));
         for (column, parameter) in exam.asked[index].columns.iter().zip(parameters) {
-            let strength = projected.products[(*column, *column)].max(0.0).sqrt();
-            let size = if projected.absorbed(products, *column) {
-                parameter.typical
-            } else {
-                parameter.typical.min(surely() / strength)
-            };
+            let size = possible(&projected, products, *column, parameter.typical);
             let bias_of = |own: &Estimate| {
                 let place = projected.base.iter().position(|column| {
                     exam.number(*column)
                         .is_some_and(|number| (number.effect, number.parameter) == (own.effect, own.parameter))
                 })?;
                 let bias = (projected.coefficients[(place, *column)] * size).abs();
-                let (interval, usual) = (own.interval(level)?, usual(own)?);
+                let (interval, usual) = (own.interval(level)?, parameter_of(own.effect, own.parameter)?.typical);
                 let half_width = 0.5 * (interval.high - interval.low);
                 (bias > half_width.max(MATTERS * usual)).then_some(Bias {
                     effect: own.effect,
@@ -54,10 +50,15 @@ pub(super) fn confounders(exam: &Examination, fitted: &[Estimate], level: f64) -
     confounders
 }
 
-/// The usual size of a number.
-fn usual(own: &Estimate) -> Option<f64> {
-    let parameters = find(own.effect).ok()?.about.parameters.iter();
-    parameters.into_iter().find(|parameter| parameter.name == own.parameter).map(|parameter| parameter.typical)
+/// How large an effect with this column may be that is left out: as these runs show it, else as usual, if these runs would not show that.
+fn possible(projected: &Projected, products: &DMatrix<f64>, column: usize, usual: f64) -> f64 {
+    if projected.absorbed(products, column) {
+        return usual;
+    }
+    match projected.drop(&[column]) {
+        Some((drop, step, _)) if drop.sqrt() > surely() => step[0].abs(),
+        _ => usual.min(surely() / projected.products[(column, column)].sqrt()),
+    }
 }
 
 #[cfg(test)]
@@ -96,7 +97,7 @@ mod tests {
             own("speed_slip", vec![bias("e_s", 0.004), bias("e_b", 0.003)]),
         ])
         .unwrap();
-        let expected = "may move e_s of scale by 0.0040 (speed_slip of 0.015 s/m), e_b of scale by 0.0030 (speed_slip of 0.015 s/m). \
+        let expected = "would move e_s of scale by 0.0040 (speed_slip of 0.015 s/m), e_b of scale by 0.0030 (speed_slip of 0.015 s/m). \
                         What would show speed_slip: one straight leg at each of two speeds, measured by tape.";
         assert!(told.ends_with(expected), "{told}");
     }

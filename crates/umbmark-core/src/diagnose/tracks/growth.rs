@@ -2,7 +2,7 @@
 
 use super::examination::Examination;
 use crate::diagnose::suspect::Suspect;
-use crate::effect::{Law, Model, Part};
+use crate::effect::{Law, Model, Part, parameter_of};
 use crate::evidence::tracks::{Alone, estimates, whole};
 use crate::evidence::{Estimate, FitError};
 use crate::likelihood::{Fitted, Noise};
@@ -83,8 +83,7 @@ fn keeps_signs(begun: &Model, fitted: &Model, effect: &str) -> bool {
 fn with(mut model: Model, suspect: &Suspect) -> Result<Model, FitError> {
     model.add(suspect.best)?.free = true;
     for Estimate { effect, parameter, value, .. } in &suspect.estimate {
-        let about = &crate::effect::find(effect)?.about;
-        let (low, high) = about.parameters.iter().find(|p| p.name == *parameter).map_or((*value, *value), |p| p.bounds);
+        let (low, high) = parameter_of(effect, parameter).map_or((*value, *value), |own| own.bounds);
         model.set(effect, parameter, value.clamp(low, high))?;
     }
     Ok(model)

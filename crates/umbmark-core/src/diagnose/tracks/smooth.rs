@@ -198,7 +198,7 @@ pub const COVARIATES: [Covariate; 14] = [
     Covariate {
         unit: "rad",
         basis: cyclic,
-        ..covariate("heading", "the heading in the room", 6, |p| p.at.heading + 0.5 * p.rotation)
+        ..covariate("heading", "the heading in the room", 6, |p| p.at.believed_heading + 0.5 * p.rotation)
     },
     Covariate {
         unit: "s",

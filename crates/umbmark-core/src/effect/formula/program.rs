@@ -1,7 +1,7 @@
 //! A formula compiled into operations on a stack.
 
 use super::variable::{Middle, Variable};
-use crate::effect::Context;
+use crate::effect::Here;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Role;
 use std::ops::Range;
@@ -141,7 +141,7 @@ impl Program {
 
     /// The value in the middle of a piece with this motion, for values or derivatives.
     #[inline]
-    pub fn evaluate<T: Real>(&self, parameters: &[T], at: &Context<T>, motion: &Displacement2<T>) -> T {
+    pub fn evaluate<T: Real>(&self, parameters: &[T], at: &Here<T>, motion: &Displacement2<T>) -> T {
         self.watched(parameters, at, motion, |_, _| ())
     }
 
@@ -150,7 +150,7 @@ impl Program {
     pub fn watched<T: Real>(
         &self,
         parameters: &[T],
-        at: &Context<T>,
+        at: &Here<T>,
         motion: &Displacement2<T>,
         watch: impl FnMut(usize, T),
     ) -> T {
@@ -166,7 +166,7 @@ impl Program {
     fn on_stack<const SIZE: usize, T: Real>(
         &self,
         parameters: &[T],
-        at: &Context<T>,
+        at: &Here<T>,
         motion: &Displacement2<T>,
         mut watch: impl FnMut(usize, T),
     ) -> T {

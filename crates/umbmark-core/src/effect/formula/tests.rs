@@ -1,7 +1,7 @@
 use super::*;
 use crate::drive::Robot;
 use crate::effect::tests::{column, model_with, probes, seen};
-use crate::effect::{Model, ModelError};
+use crate::effect::{Context, Model, ModelError};
 use crate::geometry::{LANES, seeded};
 use crate::random::Stream;
 use program::Function;
@@ -56,7 +56,8 @@ fn laws_of_the_catalogue_written_as_formulas_replay_the_same_with_the_same_deriv
 
 #[test]
 fn every_target_does_what_its_law_says() {
-    let at = Context { length: 0.5, turn_rate: -0.3, duration: 2.0, wheel_travel: [0.4, 0.6], ..Context::default() };
+    let piece = Context { length: 0.5, turn_rate: -0.3, duration: 2.0, wheel_travel: [0.4, 0.6], ..Context::default() };
+    let at = piece.as_believed();
     let believed = WheelTravel { left: 0.4, right: 0.6 };
     let plain = Model::new(&Robot::labmate()).chain().displacement(&at, &believed);
     let moved = |target| {
@@ -73,9 +74,9 @@ fn every_target_does_what_its_law_says() {
     near(moved(Target::ForwardPerSecond).1.forward, plain.forward + 0.01 * seconds);
     near(moved(Target::SidewaysPerSecond).1.sideways, plain.sideways + 0.01 * seconds);
     // Nothing is done to a robot that stands.
-    let standing = Context { wheel_travel: [0.0; 2], ..at };
+    let standing = Context { wheel_travel: [0.0; 2], ..piece };
     let turned = model_of(&[(Target::HeadingPerSecond, "k", &[("k", 0.01)])]).chain();
-    assert_eq!(turned.displacement(&standing, &WheelTravel::default()).rotation, 0.0);
+    assert_eq!(turned.displacement(&standing.as_believed(), &WheelTravel::default()).rotation, 0.0);
     near(moved(Target::TurnScale).1.rotation, 1.01 * plain.rotation);
     near(moved(Target::ForwardScale).1.forward, 1.01 * plain.forward);
     near(moved(Target::LeftWheelScale).0.left, 0.404);
@@ -86,10 +87,7 @@ fn every_target_does_what_its_law_says() {
 /// Variables have the values of the middle of a piece.
 #[test]
 fn each_variable_is_what_its_name_says() {
-    let at = Context {
-        heading: 0.3,
-        x: 4.0,
-        y: 5.0,
+    let piece = Context {
         duration: 2.0,
         speed: 0.5,
         turn_rate: 0.1,
@@ -106,6 +104,7 @@ fn each_variable_is_what_its_name_says() {
         direction: 1.0,
         ..Context::default()
     };
+    let at = piece.at_pose(&Pose2::new(4.0, 5.0, 0.3));
     // Half of an arc: a chord of 2 r sin(angle/2), turned by half of the angle; here half of the arc turns by 0.4.
     let motion = Displacement2 { forward: 0.5, sideways: 0.1, rotation: 0.8 };
     let chord = libm::sin(0.2) / 0.2 * 0.5;
@@ -240,7 +239,7 @@ fn tree(stream: &mut Stream, depth: u32) -> Tree {
 
 /// At the origin with this heading.
 fn headed(heading: f64) -> Context {
-    Context { heading, ..Context::default() }
+    Context { believed_heading: heading, ..Context::default() }
 }
 
 /// No motion.
@@ -275,7 +274,7 @@ fn a_formula_has_the_value_of_the_tree_that_it_was_written_from() {
             largest += part.re.abs();
             steepest += part.eps[0].abs();
         });
-        let (value, expected) = (program.evaluate(&[0.7], &headed(0.4), &still()), tree.value());
+        let (value, expected) = (program.evaluate(&[0.7], &headed(0.4).as_believed(), &still()), tree.value());
         // Where a part is huge or steep, rounding decides: nothing is compared.
         if largest < 1e3 && steepest < 1e3 {
             compared += 1;
@@ -291,9 +290,10 @@ fn derivatives_are_those_of_finite_differences() {
     for (_, text, program) in trees(2) {
         // Where a part is huge, rounding decides.
         let mut tame = true;
-        program.watched(&[0.7], &headed(0.4), &still(), |_, part: f64| tame &= part.abs() < 1e6);
-        let at = |k: f64| program.evaluate(&[k], &headed(0.4), &still());
-        let here = headed(0.4).at_pose(&headed(0.4).pose().lift());
+        program.watched(&[0.7], &headed(0.4).as_believed(), &still(), |_, part: f64| tame &= part.abs() < 1e6);
+        let at = |k: f64| program.evaluate(&[k], &headed(0.4).as_believed(), &still());
+        let nowhere = Context::default();
+        let here = nowhere.at_pose(&Pose2::new(0.0, 0.0, 0.4).lift());
         let dual = program.evaluate(&seeded([0.7], &[0]), &here, &still());
         assert!(!tame || (dual.re - at(0.7)).abs() <= 1e-7 * (1.0 + at(0.7).abs()), "{text}: {} {}", dual.re, at(0.7));
         let numeric = |h: f64| (at(0.7 + h) - at(0.7 - h)) / (2.0 * h);
@@ -341,7 +341,7 @@ fn signs_powers_and_order_are_those_of_arithmetic() {
         ("sign(-3) + sign(0) + abs(-2)", 1.0),
     ] {
         let program = parser::parse(text, &[]).unwrap();
-        assert_eq!(program.evaluate(&[], &headed(0.0), &still()), value, "{text}");
+        assert_eq!(program.evaluate(&[], &headed(0.0).as_believed(), &still()), value, "{text}");
     }
 }
 
@@ -461,9 +461,10 @@ fn units_that_do_not_agree_are_refused_with_both_sides() {
 
 #[test]
 fn a_place_where_a_formula_is_no_number_is_named_with_what_is_there() {
-    let at = Context { time: 3.0, length: 0.0, since_turn: 0.0, run: 2.0, ..Context::default() };
-    let check = |target, text: &str, k: f64, at: &Context| {
-        model_of(&[(target, text, &[("k", k)])]).check_along([at]).map_err(|error| error.to_string())
+    let piece = Context { time: 3.0, length: 0.0, since_turn: 0.0, run: 2.0, ..Context::default() };
+    let at = piece.as_believed();
+    let check = |target, text: &str, k: f64, at: &Here| {
+        model_of(&[(target, text, &[("k", k)])]).check_along([*at]).map_err(|error| error.to_string())
     };
     let said = "own_0: \"k / since_turn\", or its derivative, is not finite 3.00 s after START in run 2, where k = 0.001, \
                 since_turn = 0 m; change the formula so that it is finite there too, for instance a / max(b, 0.01) instead \
@@ -475,21 +476,22 @@ fn a_place_where_a_formula_is_no_number_is_named_with_what_is_there() {
     assert!(check(Target::ForwardScale, "k * sqrt(heading)", 1.0, &at).is_err(), "that by the heading is");
     assert!(check(Target::ForwardScale, "log(k - 1)", 0.5, &at).is_err());
     // The derivatives by x and by y, where the formula has them.
-    let there = Context { x: 2.0, y: 1.0, heading: 0.5, ..at };
-    for (name, here) in [("x", Context { x: 0.0, ..there }), ("y", Context { y: 0.0, ..there })] {
+    let place = |x: f64, y: f64| piece.at_pose(&Pose2::new(x, y, 0.5));
+    let there = place(2.0, 1.0);
+    for (name, here) in [("x", place(0.0, 1.0)), ("y", place(2.0, 0.0))] {
         let text = format!("k * sqrt({name})");
         let said = check(Target::ForwardScale, &text, 1.0, &here).unwrap_err();
         assert!(said.contains(&format!("\"sqrt({name})\"")) && said.contains(&format!("{name} = 0 m;")), "{said}");
         assert_eq!(check(Target::ForwardScale, &text, 1.0, &there), Ok(()));
         assert_eq!(check(Target::ForwardScale, "k * heading", 1.0, &here), Ok(()));
     }
-    assert!(check(Target::ForwardScale, "k * sqrt(x - y)", 1.0, &Context { y: 2.0, ..there }).is_err());
+    assert!(check(Target::ForwardScale, "k * sqrt(x - y)", 1.0, &place(2.0, 2.0)).is_err());
     // With as many parameters as there may be, every derivative is looked at.
-    for (name, here) in [("x", Context { x: 0.0, ..there }), ("y", Context { y: 0.0, ..there })] {
+    for (name, here) in [("x", place(0.0, 1.0)), ("y", place(2.0, 0.0))] {
         let text = format!("a + b + c + d + e + f * sqrt({name})");
         let all = ["a", "b", "c", "d", "e", "f"].map(|name| (name, 1.0));
         let model = model_of(&[(Target::ForwardScale, &text, &all)]);
-        assert!(model.check_along([&there]).is_ok() && model.check_along([&here]).is_err(), "{name}");
+        assert!(model.check_along([there]).is_ok() && model.check_along([here]).is_err(), "{name}");
     }
     assert_eq!(check(Target::ForwardScale, "k * sqrt(speed)", 1.0, &at), Ok(()));
 }

@@ -1,10 +1,10 @@
 //! Variables of formulas.
 
 use super::units::Unit;
-use crate::effect::Context;
+use crate::effect::Here;
 use crate::geometry::{Displacement2, Real};
 
-/// A quantity of the [`Context`], as it is in the middle of the piece.
+/// A quantity of a piece, as it is in the middle of the piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Variable {
     Speed,
@@ -110,12 +110,12 @@ pub(super) struct Middle<'a, T> {
 impl<'a, T: Real> Middle<'a, T> {
     /// That of a piece with this motion.
     #[inline]
-    pub fn new(at: &Context<T>, motion: &'a Displacement2<T>) -> Middle<'a, T> {
+    pub fn new(at: &Here<T>, motion: &'a Displacement2<T>) -> Middle<'a, T> {
         Middle { motion, heading: at.heading + motion.rotation * 0.5, place: None }
     }
 
     #[inline]
-    fn place(&mut self, at: &Context<T>) -> [T; 2] {
+    fn place(&mut self, at: &Here<T>) -> [T; 2] {
         let motion = self.motion;
         *self.place.get_or_insert_with(|| halfway(at, motion))
     }
@@ -123,7 +123,7 @@ impl<'a, T: Real> Middle<'a, T> {
 
 /// The place where half of a motion is made.
 #[inline(never)]
-fn halfway<T: Real>(at: &Context<T>, motion: &Displacement2<T>) -> [T; 2] {
+fn halfway<T: Real>(at: &Here<T>, motion: &Displacement2<T>) -> [T; 2] {
     let Displacement2 { forward, sideways, rotation } = *motion;
     let half = Displacement2 { forward: forward * 0.5, sideways: sideways * 0.5, rotation: rotation * 0.5 };
     let middle = at.pose().moved(&half);
@@ -138,7 +138,7 @@ impl Variable {
 
     /// Its value.
     #[inline]
-    pub fn of<T: Real>(self, at: &Context<T>, middle: &mut Middle<T>) -> T {
+    pub fn of<T: Real>(self, at: &Here<T>, middle: &mut Middle<T>) -> T {
         let half = 0.5 * at.length;
         T::from(match self {
             Variable::Heading => return middle.heading,
