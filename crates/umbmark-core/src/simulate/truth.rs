@@ -209,13 +209,14 @@ impl Truth {
         believed: &WheelTravel,
         lost: &WheelTravel,
     ) -> Displacement2 {
-        let (driven, at) = if self.varies {
+        let driven;
+        let at = &if self.varies {
             let session_distance = self.trucks_drove + at.session_distance;
-            (Context { run: self.trucks_run, session_distance, ..*at }, *real)
+            driven = Context { run: self.trucks_run, session_distance, ..*at };
+            driven.at_pose(real)
         } else {
-            (self.anywhere, Pose2::IDENTITY)
+            self.anywhere.as_believed()
         };
-        let at = &driven.at_pose(&at);
         let mut travel = self.chain.wheel_travel(at, believed);
         if self.noisy {
             let variance = variance(&self.random, &travel);

@@ -1096,8 +1096,8 @@ class Diagnosis(Result, frozen=True):
     minimum_detectable_sizes : tuple[DetectableSize, ...]
         The same for each parameter.
     confounders : tuple[Confounder, ...]
-        Effects that these runs would not show and that would bias the first numbers of the model,
-        the worst first.
+        Effects that the model lacks, of sizes that these runs allow, that would bias its first
+        numbers, the worst first.
     next_experiments : tuple[Experiment, ...]
         What to measure next, the most informative per minute first.
     identifiability : Identifiability
@@ -1259,7 +1259,8 @@ class DetectableSize(Record, frozen=True):
 
 
 class Confounder(Record, frozen=True):
-    """An effect that these runs would not show, and that would bias what is fitted.
+    """An effect that the model lacks, of a size that these runs allow, that would bias what is
+    fitted.
 
     Attributes
     ----------
@@ -1268,8 +1269,8 @@ class Confounder(Record, frozen=True):
     parameter : str
         The parameter that has the size.
     size : float
-        The size, in the unit of the parameter: the usual one, or the minimum detectable one where
-        that is smaller.
+        The size, in the unit of the parameter: as these runs show it, else the usual one, or the
+        minimum detectable one where that is smaller.
     biases : tuple[Bias, ...]
         The fitted numbers that it would move out of their intervals, by more than a tenth of their
         usual size.
@@ -2348,8 +2349,8 @@ class Learnt(Result, frozen=True):
     unlisted : Unlisted or None
         A missing effect that is not in the catalogue; None if there is none.
     confounders : tuple[Confounder, ...]
-        Effects that these runs would not show and that would bias the first numbers of the model,
-        the worst first.
+        Effects that the model lacks, of sizes that these runs allow, that would bias its first
+        numbers, the worst first.
     next_experiments : tuple[Experiment, ...]
         What to measure next, the most informative per minute first.
     model : Model
@@ -3422,8 +3423,8 @@ class Solution(Result, frozen=True):
     not_shown : tuple[str, ...]
         What these runs do not show of the robot: effects that become numbers of it.
     confounders : tuple[Confounder, ...]
-        Effects that these runs would not show and that would bias the first numbers of the model,
-        the worst first.
+        Effects that the model lacks, of sizes that these runs allow, that would bias its first
+        numbers, the worst first.
     reasons : tuple[str, ...]
         Why the verdict is not "explained", a sentence each.
     model : Model
