@@ -16,6 +16,8 @@ NEAR_S = 0.5
 """A named moment belongs to a jump that is so near."""
 DELAY_S = 5e-3
 """A delay may be off by so much at most."""
+APART_S, CLOCK_S = 0.02, 0.02
+"""Delays that scatter by more from run to run are those of clocks; each may be off by so much."""
 SMALL = 5e-5
 """E_d, E_b and E_s that are off by less harm nobody, however small the standard error."""
 AGREES = 0.01
@@ -76,6 +78,8 @@ def delay(learn: Json, truth: Json) -> Json | None:
     said = fitted(learn, "reference_delay", "delay_s")
     true = truth["apparent_delay_s"]
     numbers = truth["numbers"]
+    if numbers["reference"]["delay_scatter_s"] > APART_S:
+        return own_clocks(learn, truth, said[0] if said else 0.0)
     follows = numbers["faults"]["counts_commands"] or numbers["reference"]["filter_s"]
     for effect in ("wheel_lag", "reference_filter") if follows else ():
         share, time = (written(learn, effect, name) for name in ("share", "time_constant_s"))
@@ -88,6 +92,16 @@ def delay(learn: Json, truth: Json) -> Json | None:
     assert off is not None
     off["within"] = abs(off["standard_errors"]) <= ERRORS and abs(off["said"] - true) <= DELAY_S
     return off
+
+
+def own_clocks(learn: Json, truth: Json, common: float) -> Json | None:
+    """The delay of the run that is farthest from its truth, where each has its own."""
+    told = (learn.get("setup") or {}).get("delays") or []
+    pairs = [(one["own_clock_s"] + common, truth["logs"][one["run"]]["delay_s"]) for one in told]
+    if not pairs:
+        return {"said": None, "true": 0.0, "within": False}
+    said, true = max(pairs, key=lambda pair: abs(pair[0] - pair[1]))
+    return {"said": said, "true": true, "within": abs(said - true) <= CLOCK_S}
 
 
 def right_additions(truth: Json) -> tuple[set[str], set[str]]:

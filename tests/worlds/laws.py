@@ -23,6 +23,11 @@ def wheel_travel(
     travel = rolled * radii
     if laws.slip_s_m:
         travel = travel * (1 - laws.slip_s_m * np.abs(travel) / step_s)
+    if laws.body_slip_s_m:
+        travel = travel * (1 - laws.body_slip_s_m * np.abs(travel.mean(axis=0)) / step_s)
+    if laws.forward_slip_s_m:
+        way = travel.mean(axis=0)
+        travel = travel - laws.forward_slip_s_m * np.abs(way) / step_s * way
     if laws.eccentricity_left_m or laws.eccentricity_right_m:
         amplitude = np.array([laws.eccentricity_left_m, laws.eccentricity_right_m])
         amplitude = amplitude.reshape(-1, *[1] * (rolled.ndim - 1))

@@ -207,6 +207,10 @@ class Laws:
     """Each metre, ahead or back, turns the robot by cosine·cos(heading) + sine·sin(heading)."""
     slip_s_m: float = 0.0
     """Each wheel loses this share of its travel per m/s of its speed."""
+    body_slip_s_m: float = 0.0
+    """Both wheels lose this share of their travel per m/s of the speed between them."""
+    forward_slip_s_m: float = 0.0
+    """The way between them loses this share per m/s of its speed; no turn does."""
     eccentricity_left_m: float = 0.0
     eccentricity_right_m: float = 0.0
     """The radius of a wheel changes by this as it turns."""

@@ -98,6 +98,29 @@ def test_a_delay_is_found_with_its_sign(delay_s: float) -> None:
     assert said["delay"]["within"], said["delay"]
 
 
+def test_runs_whose_poses_have_clocks_of_their_own_are_laid_on_them() -> None:
+    said = found("clocks", 2, "delay_scatter_s=0.15")
+    assert (said["verdict"], said["added_wrong"]) == ("explained", [])
+    assert said["delay"]["within"], said["delay"]
+    assert all(abs(one["standard_errors"]) < 4 for one in said["ratios"].values()), said["ratios"]
+
+
+@pytest.mark.parametrize(
+    ("world", "size", "effect"),
+    [
+        ("body_slip", "body_slip_s_m=0.06", "body_speed_slip"),
+        ("forward_slip", "forward_slip_s_m=0.06", "forward_slip"),
+    ],
+)
+def test_slip_by_the_speed_of_the_body_is_told_from_that_of_each_wheel(
+    world: str, size: str, effect: str
+) -> None:
+    said = found(world, 2, size, "run_s=60")
+    assert (said["verdict"], said["added_wrong"]) == ("explained", [])
+    assert effect in said["added_right"]
+    assert all(abs(one["standard_errors"]) < 4 for one in said["ratios"].values()), said["ratios"]
+
+
 def test_a_filter_of_the_reference_is_found_and_the_robot_keeps_its_size() -> None:
     # Taken for wheels that follow late, it moves E_b and E_s by more than a per cent.
     said = found("low_pass", 2, "filter_s=0.3")

@@ -280,6 +280,15 @@ def test_a_slipping_wheel_loses_its_share_per_speed() -> None:
     np.testing.assert_allclose(travel[:, 0], [0.005 * (1 - 0.1 * 0.5), 0.006 * (1 - 0.1 * 0.6)])
 
 
+def test_both_wheels_slip_by_the_speed_between_them_or_lose_way_alone() -> None:
+    rolled, still = np.full((2, 1), 0.1), np.zeros((2, 1))
+    radii = np.array([[0.05], [0.06]])
+    travel = wheel_travel(Laws(body_slip_s_m=0.1), rolled, still, radii, 0.01)
+    np.testing.assert_allclose(travel[:, 0], np.array([0.005, 0.006]) * (1 - 0.1 * 0.55))
+    travel = wheel_travel(Laws(forward_slip_s_m=0.1), rolled, still, radii, 0.01)
+    np.testing.assert_allclose(travel[:, 0], np.array([0.005, 0.006]) - 0.1 * 0.55 * 0.0055)
+
+
 def test_a_wheel_that_is_not_round_is_right_after_each_turn() -> None:
     angle = (np.arange(1000) + 0.5) * 2 * pi / 1000
     rolled = np.full((2, 1000), 2 * pi / 1000)

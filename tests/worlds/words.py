@@ -41,6 +41,8 @@ NUISANCES: dict[str, set[str]] = {
 LAWS: dict[str, tuple[set[str], str]] = {
     "slope_cosine_rad_m": ({"floor_slope_yaw"}, "heading"),
     "slip_s_m": ({"speed_slip", "speed_slip_left", "speed_slip_right"}, "speed"),
+    "body_slip_s_m": ({"body_speed_slip"}, "speed"),
+    "forward_slip_s_m": ({"forward_slip"}, "speed"),
     "eccentricity_left_m": ({"wheel_eccentricity_left"}, "wheel_angle_left"),
     "eccentricity_right_m": ({"wheel_eccentricity_right"}, "wheel_angle_right"),
     "wave_rad_s": (set(), "time"),

@@ -40,6 +40,11 @@ def delay(_: Setting, random: Random) -> Changes:
     return {"delay_s": signed(random, size), "delay_scatter_s": random.uniform(0, 5e-3)}
 
 
+def clocks(_: Setting, random: Random) -> Changes:
+    """The recorder of the poses is started anew for each run."""
+    return {"delay_scatter_s": log_uniform(random, 0.05, 0.3)}
+
+
 def low_pass(_: Setting, random: Random) -> Changes:
     """Poses that a first-order filter has smoothed."""
     return {"filter_s": log_uniform(random, 0.08, 0.4)}
@@ -229,6 +234,16 @@ def slip(_: Setting, random: Random) -> Changes:
     return {"slip_s_m": log_uniform(random, 0.005, 0.1)}
 
 
+def body_slip(_: Setting, random: Random) -> Changes:
+    """Both wheels lose travel in proportion to the speed of the robot."""
+    return {"body_slip_s_m": log_uniform(random, 0.005, 0.1)}
+
+
+def forward_slip(_: Setting, random: Random) -> Changes:
+    """The robot loses way in proportion to its speed, and no turn."""
+    return {"forward_slip_s_m": log_uniform(random, 0.005, 0.1)}
+
+
 def once_a_turn(setting: Setting, random: Random) -> Changes:
     """One or both wheels are not round."""
     size = setting.robot.nominal_radius_m * log_uniform(random, 0.003, 0.03)
@@ -291,6 +306,7 @@ WORLDS = {
         World("null", "E_d, E_b and E_s alone are off", always()),
         World("perfect", "nothing is off", always(**PERFECT)),
         World("delay", "constant delay of the reference, 10 to 300 ms either way", delay),
+        World("clocks", "poses of each run by a clock of its own, 50 to 300 ms off", clocks),
         World("low_pass", "poses behind a low-pass filter of 0.08 to 0.4 s", low_pass),
         World("rate", "clock of the reference 50 to 3000 ppm off", rate),
         World("lever", "tracked point 5 to 150 mm from the axle's centre", lever),
@@ -359,6 +375,8 @@ WORLDS = {
         ),
         World("slope_yaw", "law: turn per metre is a sine of the heading", slope_yaw),
         World("slip", "law: wheels lose travel in proportion to speed", slip),
+        World("body_slip", "law: both wheels lose by the speed of the robot", body_slip),
+        World("forward_slip", "law: way is lost by the speed of the robot", forward_slip),
         World("once_a_turn", "law: wheels that are not round", once_a_turn),
         World("time_wave", "law: yaw rate is a sine of time", time_wave),
         World("load", "law: fast turns on the spot lose more", load),

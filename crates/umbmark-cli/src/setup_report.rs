@@ -60,9 +60,29 @@ pub fn taken_text(taken: &[Taken]) -> String {
     taken.iter().map(one).collect()
 }
 
-/// Jumps and wrong poses, a paragraph each.
+/// Clocks of runs that differ.
+fn clocks_text(setup: &Setup) -> String {
+    let mut own: Vec<&RunSetup> = setup.runs.iter().filter(|run| run.own_clock != 0.0).collect();
+    own.sort_by(|a, b| b.own_clock.abs().total_cmp(&a.own_clock.abs()));
+    let told = |run: &&RunSetup| format!("{} by {:+.0} ms", run.run, 1e3 * run.own_clock);
+    let told: Vec<String> = own.iter().take(JUMPS).map(told).collect();
+    if told.is_empty() {
+        return String::new();
+    }
+    let rest = match own.len() - told.len() {
+        0 => String::new(),
+        rest => format!(", and {} (--json)", counted(rest, "more run")),
+    };
+    let said = format!(
+        "the runs' poses are not late by the same time, against their mean {}{rest}; each run is laid on its own clock.",
+        told.join(", ")
+    );
+    hanging("clocks", 10, &said)
+}
+
+/// Clocks that differ, jumps and wrong poses, a paragraph each.
 pub fn disturbances_text(setup: &Setup) -> String {
-    let mut text = String::new();
+    let mut text = clocks_text(setup);
     let jumps = setup.jumps();
     for (run, jump) in jumps.clone().take(JUMPS) {
         let turned = jump.turned.map(|t| format!(" and {:.1} deg", t.to_degrees())).unwrap_or_default();

@@ -110,6 +110,8 @@ register! {
     speed_slip,
     speed_slip_left,
     speed_slip_right,
+    body_speed_slip,
+    forward_slip,
     acceleration_slip,
     turn_slip,
     turn_slip_rate,

@@ -87,7 +87,7 @@ impl Dataset {
         let groups = groups(&self.runs);
         let mut checks = vec![runs_check(&groups)];
         checks.extend(headings_check(&groups));
-        checks.extend(log_checks(&logs, path, setup.as_ref()));
+        checks.extend(log_checks(&logs, path, setup.as_ref().zip(robot)));
         // A robot that is driven onto marks is not watched on the way, and need not be.
         if !logs.is_empty() && self.runs.iter().filter(|run| run.log.is_some()).all(ends_on_marks) {
             checks.retain(|check| check.name != "reference");
@@ -153,7 +153,10 @@ fn worst(values: impl Iterator<Item = f64>) -> Option<f64> {
     values.reduce(f64::max)
 }
 
-fn log_checks(logs: &[LogFacts], path: Option<&Path>, setup: Option<&Setup>) -> Vec<Check> {
+/// What looks the same as wheels that are named rightly, where the headings of the reference are half a turn off.
+const EITHER_WAY: &str = "the tracked headings are half a turn off, and wheels that are exchanged and both count backward would look the same";
+
+fn log_checks(logs: &[LogFacts], path: Option<&Path>, known: Option<(&Setup, &Robot)>) -> Vec<Check> {
     let mut checks = Vec::new();
     let mut add = |name, found: Option<String>, good, ok| {
         checks.extend(found.map(|found| Check { name, found, good, ok }));
@@ -190,13 +193,18 @@ fn log_checks(logs: &[LogFacts], path: Option<&Path>, setup: Option<&Setup>) -> 
         [first, .., last] => format!(", in {} logs from {first} to {last}", of_these.len()),
         these => format!(", in {}", these.concat()),
     };
-    let straight = setup.and_then(|setup| setup.mounting).is_some_and(|mounting| !mounting.turns);
-    let unseen = if sound && straight { format!("; {SIDES}") } else { String::new() };
+    let straight = known.and_then(|(setup, _)| setup.mounting).is_some_and(|mounting| !mounting.turns);
+    let half_turn = known.is_some_and(|(setup, robot)| setup.tail_first(robot).is_some());
+    let unseen = match sound {
+        true if half_turn => format!("; {EITHER_WAY}"),
+        true if straight => format!("; {SIDES}"),
+        _ => String::new(),
+    };
     let found = wheels.map(|wheels| format!("{wheels}{where_it_is}{unseen}"));
-    add("wheels", found, "as named, both counting up when driving forward", sound);
+    add("wheels", found, "as named, both counting up when driving forward", sound && !half_turn);
     checks.extend(shape_check(logs, path));
     checks.extend(reference_checks(logs));
-    checks.extend(setup.map(|setup| mounting_checks(logs, setup)).unwrap_or_default());
+    checks.extend(known.map(|(setup, _)| mounting_checks(logs, setup)).unwrap_or_default());
     checks
 }
 
@@ -300,7 +308,8 @@ fn clock_check(mounting: &Mounting, logs: &[LogFacts], (shown, within): Told) ->
     let Mounting { delay, rate, .. } = mounting;
     let half = delay.interval.high - delay.value;
     if !(half <= VAGUE_DELAY) {
-        let found = "unknown: the motion is too uniform, or agrees too little".into();
+        let uniform = || "unknown: the motion is too uniform, or agrees too little".into();
+        let found = clocks_of_logs(logs).unwrap_or_else(uniform);
         return Check { name: "clock of the poses", found, good: GOOD_CLOCK, ok: false };
     }
     let mut found = format!("{} ms late", shown(delay, 1e3));
@@ -316,6 +325,17 @@ fn clock_check(mounting: &Mounting, logs: &[LogFacts], (shown, within): Told) ->
         ok = false;
     }
     Check { name: "clock of the poses", found, good: GOOD_CLOCK, ok }
+}
+
+/// From where to where the delays of the logs reach, where they differ.
+fn clocks_of_logs(logs: &[LogFacts]) -> Option<String> {
+    let is_known = |own: &Measured| own.interval.high - own.value <= VAGUE_DELAY;
+    let known = || logs.iter().filter_map(|log| Some((&log.name, log.delay.filter(is_known)?)));
+    let by_value = |a: &(&String, Measured), b: &(&String, Measured)| a.1.value.total_cmp(&b.1.value);
+    let ((early, least), (late, most)) = (known().min_by(by_value)?, known().max_by(by_value)?);
+    let differ = least.interval.high < most.interval.low;
+    let told = |own: &Measured| format!("{:+.0} ms late", 1e3 * own.value);
+    differ.then(|| format!("differs from log to log: {} in {early}, {} in {late}", told(&least), told(&most)))
 }
 
 /// Without agreement of both motions nothing is said of the clock.

@@ -10,6 +10,8 @@
 //! 4. wrong poses and jumps, found together (`disturbances`), beside a delay or a filter of the reference (`smoothed`), and jumps that last
 //!    (`stretches`).
 //!
+//! Where the clocks of the runs differ, a fit begins with each run laid on its own (`own_clocks`).
+//!
 //! Return errors are examined separately (`returns`): runs far from the others, and columns in another unit.
 
 mod agreement;
@@ -26,6 +28,7 @@ mod low_pass;
 mod misread;
 mod notices;
 mod one_way;
+mod own_clocks;
 mod returns;
 mod shared;
 mod sightings;
@@ -138,6 +141,8 @@ pub struct RunSetup {
     pub poses: usize,
     /// Age of a pose at its time stamp, in the middle of this run \[s\]; `None` if the motion does not determine it.
     pub delay: Option<Measured>,
+    /// By how much its time stamps were set back, because the clocks of the runs differ \[s\]; else 0. `delay` is what was left then.
+    pub own_clock: f64,
     /// Those that are wrong.
     pub wrong: Vec<WrongPose>,
     /// Where it jumps.
@@ -324,7 +329,7 @@ impl Setup {
 
     /// The suspicion that the tracked body faces backward, or that the wheels are exchanged and both count backward: both cause the same
     /// motion.
-    fn tail_first(&self, robot: &Robot) -> Option<Suspicion> {
+    pub(crate) fn tail_first(&self, robot: &Robot) -> Option<Suspicion> {
         let yaw = self.mounting?.yaw?.value;
         let half = robot.drive.kind().has_axle_wheels() && wrap(yaw - std::f64::consts::PI).abs() < HALF_TURN;
         half.then_some(Suspicion::TailFirst { yaw })

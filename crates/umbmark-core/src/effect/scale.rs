@@ -30,6 +30,8 @@ impl Effect for Scale {
             "turn_slip",
             "turn_slip_rate",
             "speed_slip",
+            "body_speed_slip",
+            "forward_slip",
             "link_length",
             "rear_truck",
             "bumps",

@@ -24,6 +24,8 @@ impl Effect for Wheelbase {
             "turn_slip",
             "turn_slip_rate",
             "speed_slip",
+            "body_speed_slip",
+            "forward_slip",
             "caster_kick",
             "centripetal_load",
             "roller_scale",

@@ -339,6 +339,34 @@ fn what_tracks_determine_depends_on_the_motion_that_was_driven_and_not_on_the_pa
     assert_eq!(square.rank, 3);
 }
 
+/// The robot drives tail first, or the wheels are exchanged and both count backward: one motion.
+#[test]
+fn headings_half_a_turn_off_leave_open_which_wheel_is_which() {
+    let turned = |direction| {
+        let mut run = drive(direction, 5, same);
+        let log = run.log.as_mut().unwrap();
+        log.reference.iter_mut().for_each(|pose| pose.heading = pose.heading.map(|h| wrap(h + std::f64::consts::PI)));
+        run
+    };
+    let found = dataset(vec![turned(Direction::Cw), turned(Direction::Ccw)]).inspect();
+    let wheels = check(&found, "wheels");
+    assert!(!wheels.ok && wheels.found.contains(EITHER_WAY), "{}", wheels.found);
+}
+
+/// Oracle: the stamps of the second log are 0.4 s late.
+#[test]
+fn the_log_whose_clock_is_farthest_from_the_others_is_named() {
+    let mut late = drive(Direction::Ccw, 5, same);
+    let log = late.log.as_mut().unwrap();
+    let rows = log.time.len();
+    log.reference.retain(|pose| pose.sample + 20 < rows);
+    log.reference.iter_mut().for_each(|pose| pose.sample += 20);
+    let runs = vec![drive(Direction::Cw, 5, same), late];
+    let found = dataset(runs).inspect();
+    let clock = check(&found, "clock of the poses");
+    assert!(!clock.ok && clock.found.contains("ccw"), "{}", clock.found);
+}
+
 #[test]
 fn more_runs_have_smaller_standard_errors_and_one_direction_of_ends_keeps_both_together() {
     let ends = |directions: &[Direction]| {

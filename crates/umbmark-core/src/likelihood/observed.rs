@@ -164,13 +164,13 @@ pub struct Observed {
 
 impl Observed {
     /// Gathers the runs of a dataset that have ticks and absolute poses in at least three places. Wrong poses are left out, and those
-    /// between slow readings of counters that did not turn evenly. Runs restart where their track jumps, and long runs are cut into
-    /// pieces.
+    /// between slow readings of counters that did not turn evenly. Runs whose clocks differ are each laid on their own. Runs restart where
+    /// their track jumps, and long runs are cut into pieces.
     pub fn new(data: &Dataset, robot: &Robot) -> Result<Observed, ReplayError> {
-        let setup = Setup::of(&data.runs, robot, data.path.as_ref());
+        let (laid, setup) = Setup::on_own_clocks(&data.runs, robot, data.path.as_ref());
         let mut runs = Vec::new();
         let (mut session_distance, mut before, mut first_start) = (0.0, 0, None);
-        for (index, run) in data.runs.iter().enumerate() {
+        for (index, run) in laid.iter().enumerate() {
             if data.begins_session(index) {
                 (session_distance, before) = (0.0, runs.len());
             }

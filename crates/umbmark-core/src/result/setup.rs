@@ -79,6 +79,8 @@ pub struct Delay {
     pub run: String,
     /// The delay, in s; null without enough motion.
     pub delay_s: Option<Measured>,
+    /// By how much the time stamps were set back before that, in s, because the clocks of the runs differ; else 0.
+    pub own_clock_s: f64,
 }
 
 /// A place where a track jumps, or a few seconds in which robot and wheels disagree.
@@ -219,7 +221,11 @@ pub struct Setup {
 impl From<&setup::Setup> for Setup {
     fn from(setup: &setup::Setup) -> Self {
         let fault = |fault: &setup::Fault| Fault { fault: fault.sentence(), remedy: fault.remedy() };
-        let delay = |run: &setup::RunSetup| Delay { run: run.run.clone(), delay_s: run.delay.as_ref().map(Into::into) };
+        let delay = |run: &setup::RunSetup| Delay {
+            run: run.run.clone(),
+            delay_s: run.delay.as_ref().map(Into::into),
+            own_clock_s: run.own_clock,
+        };
         let wrong = |run: &setup::RunSetup, wrong: &setup::WrongPose| WrongPose {
             run: run.run.clone(),
             time_s: wrong.time,

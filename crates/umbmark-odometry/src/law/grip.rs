@@ -69,6 +69,42 @@ impl WheelLaw for SpeedSlipRight {
     }
 }
 
+/// The share of travel that both wheels lose per speed of the body.
+///
+/// `s_w ← (1 - k |v|) s_w  for both wheels, v the mean speed of their rims`
+pub struct BodySpeedSlip;
+
+impl WheelLaw for BodySpeedSlip {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
+        let kept = -p[0] * body_speed(travel, at) + 1.0;
+        travel.left *= kept;
+        travel.right *= kept;
+    }
+}
+
+/// The share of the way ahead that is lost per speed of the body, the rotation unchanged.
+///
+/// `s_w ← s_w - k |v| (s_L + s_R)/2  for both wheels, v the mean speed of their rims`
+pub struct ForwardSlip;
+
+impl WheelLaw for ForwardSlip {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
+        let lost = p[0] * body_speed(travel, at) * (travel.left + travel.right) * 0.5;
+        travel.left -= lost;
+        travel.right -= lost;
+    }
+}
+
+/// Size of the mean speed of the rims \[m/s\].
+#[inline(always)]
+fn body_speed<T: Real>(travel: &WheelTravel<T>, at: &Here<T>) -> T {
+    let rim = |rolled: T, wheel: usize| size(rolled, at, wheel) * at.wheel_speed[wheel];
+    let speed = (rim(travel.left, 0) + rim(travel.right, 1)) * 0.5;
+    if speed.value() < 0.0 { -speed } else { speed }
+}
+
 /// The share of travel that each wheel loses per acceleration, and gains per deceleration.
 ///
 /// `s_w ← (1 - k d|v_w|/dt) s_w`

@@ -246,10 +246,14 @@ class Delay(Record, frozen=True):
         Name of the run.
     delay_s : Measured or None
         The delay, in s; None without enough motion.
+    own_clock_s : float
+        By how much the time stamps were set back before that, in s, because the clocks of the runs
+        differ; else 0.
     """
 
     run: str
     delay_s: Measured | None
+    own_clock_s: float
 
 
 class Jump(Record, frozen=True):

@@ -87,6 +87,8 @@ EffectName: TypeAlias = Literal[
     "speed_slip",
     "speed_slip_left",
     "speed_slip_right",
+    "body_speed_slip",
+    "forward_slip",
     "acceleration_slip",
     "turn_slip",
     "turn_slip_rate",
