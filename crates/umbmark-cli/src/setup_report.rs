@@ -74,7 +74,7 @@ fn clocks_text(setup: &Setup) -> String {
         rest => format!(", and {} (--json)", counted(rest, "more run")),
     };
     let said = format!(
-        "the runs' poses are not late by the same time, against their mean {}{rest}; each run is laid on its own clock.",
+        "the poses of the runs are not equally late: against the median run, {}{rest}; each run is laid on its own clock.",
         told.join(", ")
     );
     hanging("clocks", 10, &said)

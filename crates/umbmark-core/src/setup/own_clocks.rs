@@ -7,7 +7,7 @@ use crate::run::{PoseRow, Run, TickLog, place};
 use crate::stats::{Measured, robust};
 use std::borrow::Cow;
 
-/// Clocks differ where the delays of the runs scatter by more than this about their mean \[s\]: what is less, the noise of the reference's
+/// Clocks differ where the delays of the runs scatter by more than this about their median \[s\]: what is less, the noise of the reference's
 /// clock from run to run represents.
 const APART: f64 = 0.02;
 /// The delay of a run counts where it is known to this \[s\], and where it is so many standard errors from that of all.
