@@ -12,7 +12,7 @@ import pytest
 TOP = Path(__file__).resolve().parent.parent
 UMBMARK = TOP / "target" / "release" / "umbmark"
 # As `cargo test` built them.
-PROGRAMS = TOP / "target" / "debug" / "examples"
+PROGRAMS = TOP / "target" / "release" / "examples"
 GUIDES = sorted((TOP / "docs" / "guide").glob("*.md"))
 GALLERY = TOP / "docs" / "gallery.md"
 PAGES = [TOP / "README.md", TOP / "examples" / "README.md", GALLERY, *GUIDES]

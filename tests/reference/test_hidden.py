@@ -13,12 +13,12 @@ from typing import Any
 import pytest
 from generate import main
 
-COMMAND = File(__file__).parents[2] / "target/debug/umbmark"
+COMMAND = File(__file__).parents[2] / "target/release/umbmark"
 SETS = int(os.environ.get("UMBMARK_TEST_CASES", "40"))
 SIZE = 0.05
 
 pytestmark = pytest.mark.skipif(
-    not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build)"
+    not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build --release)"
 )
 
 

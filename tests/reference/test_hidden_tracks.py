@@ -13,11 +13,11 @@ from typing import Any
 import pytest
 from generate import main
 
-COMMAND = File(__file__).parents[2] / "target/debug/umbmark"
+COMMAND = File(__file__).parents[2] / "target/release/umbmark"
 ALL = os.environ.get("UMBMARK_HIDDEN_CASES") == "all"
 
 pytestmark = pytest.mark.skipif(
-    not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build)"
+    not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build --release)"
 )
 
 FOUND = ["caster_kick", "floor_slope", "wheel_eccentricity_left"]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-COMMAND = File(__file__).parents[2] / "target/debug/umbmark"
+COMMAND = File(__file__).parents[2] / "target/release/umbmark"
 WHEELBASE = 0.340
 
 BOUNDS = {
@@ -26,7 +26,7 @@ BOUNDS = {
 """Inputs, uniform: key, flag and ends."""
 
 pytestmark = pytest.mark.skipif(
-    not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build)"
+    not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build --release)"
 )
 
 

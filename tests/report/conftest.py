@@ -12,7 +12,7 @@ from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 
 ROOT = Path(__file__).parents[2]
-COMMAND = ROOT / "target/debug/umbmark"
+COMMAND = ROOT / "target/release/umbmark"
 DATA = ROOT / "crates/umbmark-cli/tests/data"
 OPTIONS = [
     "--headless",
@@ -39,7 +39,7 @@ def umbmark(*words: str | Path) -> str:
 def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of reports."""
     if not COMMAND.exists():
-        pytest.skip(f"{COMMAND} is not built (cargo build)")
+        pytest.skip(f"{COMMAND} is not built (cargo build --release)")
     folder = tmp_path_factory.mktemp("pages")
     for name in ["labmate", "slope", "tracked"]:
         umbmark("report", DATA / name, "-o", folder / f"{name}.html", "-n", "200")

@@ -8,10 +8,10 @@ from gyro import Gyro, found, rates, world
 from record import stream
 from study import ROOT
 
-COMMAND = ROOT / "target/debug/umbmark"
+COMMAND = ROOT / "target/release/umbmark"
 
 needs_command = pytest.mark.skipif(
-    not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build)"
+    not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build --release)"
 )
 
 

@@ -13,11 +13,11 @@ from make import make
 from replay import left, read_truth, rms_m
 from study import ROOT, Task, ask, shortened, study
 
-COMMAND = ROOT / "target/debug/umbmark"
+COMMAND = ROOT / "target/release/umbmark"
 SMALL = ("runs=4", "run_s=30", "reference_rate_hz=20", "layout=same", "kind=random_commands")
 
 pytestmark = pytest.mark.skipif(
-    not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build)"
+    not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build --release)"
 )
 
 

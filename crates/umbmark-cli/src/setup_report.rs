@@ -61,23 +61,8 @@ pub fn taken_text(taken: &[Taken]) -> String {
 }
 
 /// Clocks of runs that differ.
-fn clocks_text(setup: &Setup) -> String {
-    let mut own: Vec<&RunSetup> = setup.runs.iter().filter(|run| run.own_clock != 0.0).collect();
-    own.sort_by(|a, b| b.own_clock.abs().total_cmp(&a.own_clock.abs()));
-    let told = |run: &&RunSetup| format!("{} by {:+.0} ms", run.run, 1e3 * run.own_clock);
-    let told: Vec<String> = own.iter().take(JUMPS).map(told).collect();
-    if told.is_empty() {
-        return String::new();
-    }
-    let rest = match own.len() - told.len() {
-        0 => String::new(),
-        rest => format!(", and {} (--json)", counted(rest, "more run")),
-    };
-    let said = format!(
-        "the poses of the runs are not equally late: against the median run, {}{rest}; each run is laid on its own clock.",
-        told.join(", ")
-    );
-    hanging("clocks", 10, &said)
+pub fn clocks_text(setup: &Setup) -> String {
+    setup.clocks().map(|said| hanging("clocks", 10, &format!("{said}."))).unwrap_or_default()
 }
 
 /// Clocks that differ, jumps and wrong poses, a paragraph each.

@@ -46,9 +46,12 @@ fn umbmark(folder: &Path, arguments: &[&str]) -> Output {
 fn library() -> PathBuf {
     let target = Path::new(env!("CARGO_BIN_EXE_umbmark")).parent().unwrap().parent().unwrap();
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["build", "--offline", "-p", "umbmark-odometry-c", "--target-dir"]).arg(target).current_dir(TOP);
+    cargo
+        .args(["build", "--release", "--offline", "-p", "umbmark-odometry-c", "--target-dir"])
+        .arg(target)
+        .current_dir(TOP);
     done(&mut cargo);
-    target.join("debug/libumbmark_odometry_c.a")
+    target.join("release/libumbmark_odometry_c.a")
 }
 
 /// The numbers of each row.

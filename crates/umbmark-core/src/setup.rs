@@ -20,6 +20,7 @@ mod cheapest;
 mod clock;
 mod copies;
 mod counts_factor;
+mod differing;
 mod disturbances;
 mod edges;
 mod faults;
@@ -27,6 +28,7 @@ mod increments;
 mod low_pass;
 mod misread;
 mod notices;
+mod one_counter;
 mod one_way;
 mod own_clocks;
 mod returns;
@@ -246,10 +248,17 @@ impl Setup {
         let pooled = |seen: &[Seen]| -> Vec<Beside> {
             seen.iter().flat_map(|seen| clock::beside(&seen.windows, &seen.rolled, &seen.late)).collect()
         };
-        let (faults, reading) = faults::look(&pooled(&seen), robot);
+        let all = pooled(&seen);
+        let (faults, reading) = faults::look(&all, robot);
+        let given = Agreement::without_drift(&all, reading, wheelbase);
+        if (0..2).any(|k| given.shown[k] && given.misfits[k] > faults::DOUBTFUL)
+            && let Some(fault) = one_counter::found(&seen, robot)
+        {
+            return Setup { faults: vec![fault], runs: seen.iter().map(named).collect(), ..Setup::default() };
+        }
         let alone = |seen: &Seen| clock::beside(&seen.windows, &seen.rolled, &seen.late);
         let by_run: Vec<(&str, Vec<Beside>)> = seen.iter().map(|seen| (seen.run.name.as_str(), alone(seen))).collect();
-        let mut faults = faults::differing(&by_run, (&faults, reading), robot).unwrap_or(faults);
+        let mut faults = differing::faults(&by_run, (&faults, reading), robot).unwrap_or(faults);
         if faults.iter().any(|fault| matches!(fault, Fault::OtherMotion { .. })) {
             faults = increments::found(&seen, robot).map_or(faults, |fault| vec![fault]);
         }

@@ -13,14 +13,14 @@ settings.register_profile("umbmark", deadline=None)
 settings.load_profile("umbmark")
 mpl.use("Agg")
 
-COMMAND = Path(__file__).parents[3] / "target/debug/umbmark"
+COMMAND = Path(__file__).parents[3] / "target/release/umbmark"
 
 
 @pytest.fixture(scope="session")
 def command() -> Path:
     """Return the command."""
     if not COMMAND.exists():
-        pytest.skip(f"{COMMAND} is not built (cargo build)")
+        pytest.skip(f"{COMMAND} is not built (cargo build --release)")
     return COMMAND
 
 

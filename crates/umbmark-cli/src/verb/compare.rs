@@ -17,7 +17,7 @@ use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::model_report::{circle_table, contrasts_table, p_text, read_model};
 use crate::prose::{details_text, hanging};
-use crate::setup_report::{doubts_text, faults_text, remains_text, returns_text};
+use crate::setup_report::{clocks_text, doubts_text, faults_text, remains_text, returns_text};
 use crate::table::table;
 use crate::test_arguments::TestArguments;
 use crate::tracks_report;
@@ -107,7 +107,7 @@ pub fn text(comparison: &Comparison, options: &Options, verbose: bool) -> String
     text += &table(&["model", "error [mm]", "[deg]", "p", "explains"], comparison.models.iter().map(row));
     text += "\n";
     let setup = &comparison.setup;
-    text += &(faults_text(setup) + &doubts_text(setup) + &returns_text(setup));
+    text += &(faults_text(setup) + &doubts_text(setup) + &clocks_text(setup) + &returns_text(setup));
     for judged in &comparison.models {
         text += &format!("\n{}\n\n", judged.name);
         if verbose {

@@ -4,6 +4,7 @@ use super::scores::{COMPONENTS, Scorer};
 use super::*;
 use crate::calibrate::{Correction, drive_again};
 use crate::dataset::{Dataset, ReturnError, Run};
+use crate::diagnose::tests::trials;
 use crate::effect::{Model, TestKind};
 use crate::random::Stream;
 use crate::simulate::{Odometry, Phase, Simulator, Truth};
@@ -317,11 +318,11 @@ fn months_of_engine(robots: u64, runs: u32, rate: Rate, seed: u64) -> (usize, us
     (0..robots).into_par_iter().map(watch).reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
 }
 
-/// Seed 6; 500 robots of the engine, half of them on bumpy floors and half without headings, 130 runs each; a false alarm in 3 months of 60 runs is asked.
+/// Seed 6; 150 robots of the engine, half of them on bumpy floors and half without headings, 130 runs each; a false alarm in 3 months of 60 runs is asked.
 #[test]
 fn robots_of_the_engine_that_do_not_change_are_accused_as_often_as_is_asked() {
     let rate = Rate { false_alarms_per_month: 1.0 / 3.0, runs_per_month: 60 };
-    let (alarms, compared) = months_of_engine(500, 130, rate, 6);
+    let (alarms, compared) = months_of_engine(trials(150), 130, rate, 6);
     let asked = compared as f64 * rate.per_run();
     println!("{alarms} alarms in {compared} runs, {asked:.1} asked");
     // 4 standard errors of the number of alarms; robots on bumpy floors are not normal.

@@ -196,7 +196,7 @@ fn a_delay_that_the_given_model_fixes_is_kept_and_otherwise_it_is_that_of_the_mo
 /// and Student's t from the runs, six of them: the intervals are wide rather than narrow.
 #[test]
 fn intervals_of_fits_to_tracks_hold_the_truth_in_at_least_nineteen_of_twenty() {
-    let trials = trials(60);
+    let trials = trials(24);
     let robot = Robot::labmate();
     let truth = [
         ("wheel_diameter_ratio", "e_d", 1.003),

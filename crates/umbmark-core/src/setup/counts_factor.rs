@@ -42,6 +42,18 @@ impl CountsFactor {
         [2.0, 0.5].iter().any(|factor| (self.ratio / factor - 1.0).abs() < DOUBLE)
     }
 
+    /// What the counts of a run are off beside those of all runs, if that is a power of two.
+    pub(super) fn beside(&self, all: &CountsFactor) -> Option<CountsFactor> {
+        let own = CountsFactor { ratio: self.ratio / all.ratio, ..*self };
+        let power = libm::log2(own.ratio).round();
+        (power != 0.0 && (own.ratio / libm::exp2(power) - 1.0).abs() < DOUBLE).then_some(own)
+    }
+
+    /// The usual factor that is near, or the ratio itself.
+    pub(super) fn nearest(&self) -> f64 {
+        self.usual().unwrap_or(self.ratio)
+    }
+
     /// The usual factor that is near, if there is one.
     fn usual(&self) -> Option<f64> {
         let nearest = |base: f64| libm::pow(base, (libm::log(self.ratio) / libm::log(base)).round());

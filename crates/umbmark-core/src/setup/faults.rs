@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 pub(super) const DOUBTFUL: f64 = 0.3;
 const CLEARLY: f64 = 0.6;
 /// If the misfit of every reading exceeds this, wheels and reference do not belong to the same drive.
-const NOTHING: f64 = 0.75;
+pub(super) const NOTHING: f64 = 0.75;
 /// If the rotation is less than this share of the expected one, its sign is undetermined. Distances and rotations beyond the inverse belong
 /// to another reading.
 const LEAST_GAIN: f64 = 0.2;
@@ -30,8 +30,6 @@ const UNITS: [(f64, &str, &str); 7] = [
 const FEW_DEGREES: f64 = 0.6;
 /// Counts or lengths that are off by more than this factor, or the inverse, are no robot's.
 const MOST_SCALE: f64 = 3.0;
-/// Minimum number of windows for a run to be examined by itself.
-const FEWEST: usize = 20;
 /// Tolerance, as a share, to recognise a unit or a factor of the counts by its size.
 pub(super) const NEAR: f64 = 0.08;
 
@@ -91,6 +89,13 @@ pub enum Fault {
     },
     /// Way and rotations by the reference are both so many times those by the wheels.
     Counts(CountsFactor),
+    /// The counts of one wheel, and not of the other, have to be multiplied by a factor.
+    OneCounter {
+        /// What the column is called, after "ticks_".
+        name: &'static str,
+        /// That factor.
+        factor: f64,
+    },
     /// The reference moves, and the wheels hardly roll.
     Standing {
         /// Way by the counts in all runs \[m\].
@@ -186,6 +191,11 @@ impl Fault {
                 )
             }
             Fault::Counts(factor) => factor.sentence(),
+            Fault::OneCounter { name, factor } => format!(
+                "ticks_{name} has {} times the counts of the other wheel for the same way: both motions agree with the reference if it is \
+                 multiplied by {factor}",
+                1.0 / factor
+            ),
             Fault::Standing { rolled, moved } => format!(
                 "the wheels stand while the reference moves: {rolled:.3} m by the counts of all runs, and {moved:.2} m from the beginning of a \
                  run by the reference"
@@ -208,7 +218,7 @@ impl Fault {
     }
 
     /// By what headings must be multiplied, with these faults.
-    fn heading_factor(faults: &[Fault]) -> f64 {
+    pub(super) fn heading_factor(faults: &[Fault]) -> f64 {
         let of = |fault: &Fault| match fault {
             Fault::HeadingInDegrees => Some(1.0_f64.to_radians()),
             Fault::HeadingInRadians => Some(1.0_f64.to_degrees()),
@@ -255,6 +265,9 @@ impl Fault {
             Fault::Increments => "write the running sum of its counts into each column ticks_*".into(),
             Fault::OtherScale { .. } => "check the unit of the positions and [robot] in robot.toml".into(),
             Fault::Counts(factor) => factor.remedy(),
+            Fault::OneCounter { name, factor } => {
+                format!("multiply ticks_{name} by {factor} (a decoder counts one, two or four edges of each line)")
+            }
             Fault::Standing { .. } => {
                 "check whether the columns of the ticks are those of the wheels, and ticks_per_revolution under [robot] in robot.toml".into()
             }
@@ -302,6 +315,8 @@ impl Fault {
             Fault::PositionsExchanged => "exchange the columns of x and y".into(),
             Fault::HeadingInDegrees => "write the measured heading in radians".into(),
             Fault::HeadingInRadians => "write the measured heading in degrees".into(),
+            Fault::Counts(factor) => format!("multiply all counts by {}", factor.nearest()),
+            Fault::OneCounter { .. } => self.remedy(),
             _ => "check their columns".into(),
         }
     }
@@ -314,61 +329,6 @@ fn named(runs: &[String]) -> String {
         [name] => format!("run {name}"),
         _ => format!("runs {}", runs.join(", ")),
     }
-}
-
-/// The faults of runs that were recorded with other columns or headings than the rest, or whose wheels and reference do not belong together;
-/// `None` where all were recorded alike.
-///
-/// A run is examined by itself only if it disagrees with the agreement of all runs.
-pub(super) fn differing(
-    runs: &[(&str, Vec<Beside>)],
-    (together, reading): (&[Fault], Reading),
-    robot: &Robot,
-) -> Option<Vec<Fault>> {
-    if runs.len() < 2 || Fault::heading_factor(together) != 1.0 {
-        return None;
-    }
-    let wheelbase = robot.drive.wheelbase();
-    let pooled: Vec<Beside> = runs.iter().flat_map(|(_, own)| own.iter().copied()).collect();
-    let agreed = Agreement::without_drift(&pooled, reading, wheelbase);
-    let doubtful = |own: &[Beside]| agreed.misfits_of(own, reading, wheelbase).iter().any(|misfit| *misfit > VAGUE);
-    if !runs.iter().any(|(_, own)| own.len() >= FEWEST && doubtful(own)) {
-        return None;
-    }
-    // Each run by itself, if its motion then agrees and determines distance and rotation; and those that agree in no reading.
-    let mut kinds: Vec<(Vec<Fault>, Vec<String>)> = Vec::new();
-    let (mut strange, mut least): (Vec<String>, f64) = (Vec::new(), f64::INFINITY);
-    for (name, own) in runs.iter().filter(|(_, own)| own.len() >= FEWEST) {
-        let (faults, own_reading) = look(own, robot);
-        let read = scaled(own, Fault::heading_factor(&faults));
-        let found = Agreement::without_drift(&read, own_reading, wheelbase);
-        if found.shown != [true; 2] || found.misfits.iter().any(|misfit| *misfit > DOUBTFUL) {
-            // Courses of single positions turn by chance where the robot is slow: then the way says more than the turns.
-            let misfit = match own.iter().all(|(window, _)| window.with_heading) {
-                true => agreed.misfit_of_turns(own, reading, wheelbase),
-                false => agreed.misfits_of(own, reading, wheelbase)[0],
-            };
-            if misfit > NOTHING && !agreed.only_wheels_turn(own, reading, wheelbase) {
-                strange.push((*name).to_owned());
-                least = least.min(misfit);
-            }
-            continue;
-        }
-        match kinds.iter_mut().find(|(own, _)| *own == faults) {
-            Some((_, same)) => same.push((*name).to_owned()),
-            None => kinds.push((faults, vec![(*name).to_owned()])),
-        }
-    }
-    let each = |(faults, runs): (Vec<Fault>, Vec<String>)| {
-        faults.into_iter().map(move |fault| Fault::InRuns { fault: Box::new(fault), runs: runs.clone() })
-    };
-    let mut faults: Vec<Fault> = if kinds.len() > 1 { kinds.into_iter().flat_map(each).collect() } else { Vec::new() };
-    // Others must agree: if none do, nothing is known of any.
-    let others = runs.len() > strange.len() && !together.iter().any(|fault| matches!(fault, Fault::OtherMotion { .. }));
-    if !strange.is_empty() && others {
-        faults.push(Fault::InRuns { fault: Box::new(Fault::OtherMotion { misfit: least }), runs: strange });
-    }
-    (!faults.is_empty()).then_some(faults)
 }
 
 /// The faults of columns and headings, and the reading on which everything else is based.
@@ -496,7 +456,7 @@ fn unit_of(ratio: f64) -> Option<(&'static str, &'static str)> {
 }
 
 /// Windows with headings multiplied by a factor.
-fn scaled(windows: &[Beside], factor: f64) -> Cow<'_, [Beside]> {
+pub(super) fn scaled(windows: &[Beside], factor: f64) -> Cow<'_, [Beside]> {
     match factor {
         1.0 => windows.into(),
         _ => windows.iter().map(|(window, rolled)| (window.with_headings_times(factor), *rolled)).collect(),

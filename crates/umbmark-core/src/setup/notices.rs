@@ -1,6 +1,7 @@
 //! What must be known of an experiment, in sentences.
 
 use super::{Fault, Jump, RunSetup, Setup, Suspicion, WrongPose};
+use crate::prose::counted;
 
 /// Maximum number of notices of a kind that are listed.
 pub const TOLD: usize = 5;
@@ -20,6 +21,24 @@ impl Setup {
         let outlying = self.returned.outlying.iter().map(|run| format!("{}; {}", run.sentence(), run.remedy()));
         notices.extend(shortened(outlying.collect(), "runs far from the others"));
         notices
+    }
+
+    /// By how much the poses of runs are later than those of the median run, where each run was laid on its own clock; the first [`TOLD`].
+    pub fn clocks(&self) -> Option<String> {
+        let mut own: Vec<&RunSetup> = self.runs.iter().filter(|run| run.own_clock != 0.0).collect();
+        own.sort_by(|a, b| b.own_clock.abs().total_cmp(&a.own_clock.abs()));
+        let told = |run: &&RunSetup| format!("{} by {:+.0} ms", run.run, 1e3 * run.own_clock);
+        let told: Vec<String> = own.iter().take(TOLD).map(told).collect();
+        let rest = match own.len() - told.len() {
+            0 => String::new(),
+            rest => format!(", and {}", counted(rest, "more run")),
+        };
+        (!told.is_empty()).then(|| {
+            format!(
+                "the poses of the runs are not equally late: against the median run, {}{rest}; each run is laid on its own clock",
+                told.join(", ")
+            )
+        })
     }
 
     /// How many steps of references that tell motion only are wrong, in all runs together.

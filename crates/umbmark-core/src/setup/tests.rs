@@ -3,8 +3,9 @@ use crate::dataset::ReferencePose;
 use crate::drive::{DifferentialDrive, Encoder, Wiring};
 use crate::geometry::Pose2;
 use crate::random::Stream;
-use std::borrow::Cow;
 
+mod clocks;
+mod counts;
 mod driven;
 
 /// A drive as it is put in; see [`Drive::runs`].
@@ -259,38 +260,6 @@ fn headings_and_positions_that_are_not_what_they_are_called_are_named() {
 }
 
 #[test]
-fn counts_that_are_a_factor_off_are_named_with_the_line_that_mends_them() {
-    // Ticks per revolution that are written, for wheels with 20 000.
-    let looked = |written: f64| {
-        let robot = Robot { encoder: Encoder::new(written, None, None).unwrap(), ..robot() };
-        Setup::of(&clean().runs(), &robot, None)
-    };
-    for written in [80_000.0, 5_000.0, 200_000.0, 2_000.0] {
-        let found = looked(written);
-        let [Fault::Counts(factor)] = &found.faults[..] else { panic!("{written}: {:?}", found.faults) };
-        assert!((factor.ratio * 20_000.0 / written - 1.0).abs() < 0.01, "{factor:?}");
-        let line = format!("write ticks_per_revolution = 20000 under [robot] in robot.toml instead of {written} ");
-        assert!(found.faults[0].remedy().starts_with(&line), "{}", found.faults[0].remedy());
-    }
-    for written in [40_000.0, 10_000.0] {
-        let found = looked(written);
-        assert!(found.is_sound() && found.mounting.is_some());
-        let [doubt @ Suspicion::Doubled(_)] = &found.doubts[..] else { panic!("{written}: {:?}", found.doubts) };
-        assert!(doubt.sentence().contains("ticks_per_revolution = 20000 ") && doubt.forbids_writing());
-        assert!(found.notices().iter().any(|notice| *notice == doubt.sentence()));
-    }
-    let found = looked(20_000_000.0).faults;
-    assert!(matches!(found[..], [Fault::Standing { rolled, moved }] if rolled < 0.1 && moved > 0.3), "{found:?}");
-    // No usual factor: about so many.
-    let found = looked(70_000.0).faults;
-    assert!(matches!(&found[..], [fault @ Fault::Counts(_)] if fault.remedy().contains("about 20")), "{found:?}");
-    for written in [20_000.0, 17_000.0, 25_000.0] {
-        let found = looked(written);
-        assert_eq!((&found.faults[..], &found.doubts[..]), (&[][..], &[][..]));
-    }
-}
-
-#[test]
 fn wheels_that_roll_twice_the_commanded_path_are_suspicious_where_no_reference_tells() {
     let mut runs = clean().runs();
     let way = |run: &Run| {
@@ -396,57 +365,6 @@ fn coarse_counters_show_no_delay_that_is_not_there_and_make_no_pose_wrong() {
         let found = Drive { counts: 26.0, delays: vec![delay], runs: 6, seed, ..clean() }.found();
         assert_eq!((found.faults.len(), found.disturbances()), (0, [0, 0]), "{seed} {:?}", found.runs);
         near(found.mounting.map(|mounting| mounting.delay), delay, 1e-2);
-    }
-}
-
-#[test]
-fn a_delay_of_each_run_is_found_as_its_own() {
-    let delays = vec![0.0, 0.08, -0.05, 0.2];
-    let found = Drive { delays: delays.clone(), ..clean() }.found();
-    for (run, delay) in found.runs.iter().zip(delays) {
-        assert!((run.delay.unwrap().value - delay).abs() < 8e-3, "{run:?}, and {delay} was put in");
-    }
-}
-
-#[test]
-fn runs_whose_clocks_differ_are_laid_each_on_its_own() {
-    let drive = |delays: &[f64]| Drive { delays: delays.to_vec(), ..clean() };
-    let delays = [0.03, 0.11, -0.02, 0.23];
-    let runs = drive(&delays).runs();
-    let (laid, found) = Setup::on_own_clocks(&runs, &robot(), None);
-    let common = found.mounting.unwrap().delay.value;
-    for (run, delay) in found.runs.iter().zip(delays) {
-        assert!((run.own_clock + common - delay).abs() < 8e-3, "{run:?}, and {delay} was put in");
-        assert!((run.delay.unwrap().value - common).abs() < 5e-3, "{run:?}");
-    }
-    // Nothing is lost but poses from before the first row.
-    for (laid, run) in laid.iter().zip(&runs) {
-        let [laid, log] = [laid, run].map(|run| run.log.as_ref().unwrap());
-        assert!(laid.reference.len() + 6 > log.reference.len() && laid.time.len() >= log.time.len(), "{}", run.name);
-    }
-    for one_clock in [drive(&[0.1]), drive(&[0.0, 0.01, -0.01, 0.005]), Drive { rate: 2e-3, seconds: 120.0, ..clean() }]
-    {
-        let runs = one_clock.runs();
-        let (laid, found) = Setup::on_own_clocks(&runs, &robot(), None);
-        assert!(matches!(laid, Cow::Borrowed(_)) && found.runs.iter().all(|run| run.own_clock == 0.0));
-    }
-}
-
-/// A clock that is fast is later in the middle of a long run than in that of a short one.
-#[test]
-fn a_clock_that_is_fast_is_no_clock_of_each_run() {
-    let on = |seconds: f64, runs| Drive { rate: 2e-3, delays: vec![1e-3 * seconds], runs, seconds, ..clean() }.runs();
-    let mut runs = on(120.0, 3);
-    runs.extend(on(240.0, 1).into_iter().map(|run| Run { name: "long".into(), ..run }));
-    let (laid, found) = Setup::on_own_clocks(&runs, &robot(), None);
-    assert!(matches!(laid, Cow::Borrowed(_)), "{:?}", found.runs);
-}
-
-#[test]
-fn a_clock_that_is_fast_or_slow_is_found() {
-    for rate in [-1e-3, 2e-3] {
-        let found = Drive { rate, runs: 3, seconds: 120.0, ..clean() }.found();
-        near(found.mounting.unwrap().rate, rate, 2e-4);
     }
 }
 

@@ -77,11 +77,13 @@ impl Outcome {
     }
 }
 
-/// What has to be known before any figure is believed: faults of the columns, jumps of tracks, runs far from the others. A sentence each.
+/// What has to be known before any figure is believed: faults of the columns, jumps of tracks, runs far from the others, clocks that differ. A
+/// sentence each.
 fn notices(study: &Study) -> Vec<String> {
     let told = |setup: &umbmark_core::setup::Setup| setup.notices();
     let notices = study.inspection().setup.as_ref().map(told).unwrap_or_default();
-    notices.iter().map(|notice| format!("{}.", super::spoken(notice))).collect()
+    let clocks = study.diagnosis().ok().and_then(|diagnosis| diagnosis.setup.clocks());
+    notices.iter().chain(&clocks).map(|notice| format!("{}.", super::spoken(notice))).collect()
 }
 
 /// What a study comes to: the answer of the model that was learnt; of one that was given, what it leaves unexplained.

@@ -1,6 +1,7 @@
 //! Calibrations of simulated tests, whose truth is known.
 
 use super::*;
+use crate::diagnose::tests::{margin, trials};
 use crate::simulate::{Odometry, Phase, Simulator, Truth};
 
 /// A simulated test of n + n runs with wheel noise.
@@ -84,7 +85,7 @@ fn one_metre_square() -> Path {
     Path::new(&SQUARE, &[1.0], SpeedProfile::default()).unwrap()
 }
 
-/// 200 tests, seed 23: the standard error of a coverage of 95 % is 1.5 %.
+/// 80 tests, seed 23: the standard error of a coverage of 95 % is 2.4 %.
 #[test]
 fn tracks_show_all_three_ratios_and_their_intervals_hold_the_truth() {
     let robot = Robot::labmate();
@@ -94,7 +95,7 @@ fn tracks_show_all_three_ratios_and_their_intervals_hold_the_truth() {
     let path = one_metre_square();
     let mut simulator = Simulator::new(&robot, &path, Odometry::EveryTick, Phase::Random).unwrap();
     let mut truth = Truth::new(&model);
-    let trials = 200;
+    let trials = trials(80);
     let mut held = [0.0; 3];
     for trial in 0..trials {
         let calibration =
@@ -105,8 +106,8 @@ fn tracks_show_all_three_ratios_and_their_intervals_hold_the_truth() {
             held[i] += f64::from(u8::from(exact.interval(ratio, 0.95).unwrap().contains(true_values.values()[i])));
         }
     }
-    let share = held.map(|h| h / f64::from(trials as u32));
-    assert!(share.iter().all(|s| (0.90..=1.0).contains(s)), "{share:?}");
+    let share = held.map(|h| h / trials as f64);
+    assert!(share.iter().all(|s| *s > 0.95 - margin(0.95, trials)), "{share:?}");
 }
 
 #[test]

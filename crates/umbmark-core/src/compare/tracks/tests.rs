@@ -291,7 +291,7 @@ fn speeds_that_the_ticks_blur_are_not_asked() {
 /// circles.
 #[test]
 fn a_right_model_is_accused_no_more_often_than_is_asked() {
-    let trials = trials(24);
+    let trials = trials(8);
     let truth = robot_with(&[]);
     let circle = Path::new(&CIRCLE, &[1.0, 1.0], SpeedProfile::default()).unwrap();
     let models = |data: &Dataset, fitted: bool| {

@@ -1,6 +1,7 @@
 //! The table of limits, simulated.
 
 use super::{BINS, Lines, TABLE, limits};
+use crate::diagnose::tests::trials;
 use crate::drift::scores::{COMPONENTS, Scorer};
 use crate::drift::statistic::{Kind, Scan, Signature};
 use crate::random::Stream;
@@ -140,7 +141,7 @@ fn the_table_is_what_the_simulation_gives() {
     }
 }
 
-/// Seed 5; 2 000 robots of each layout, 120 scored runs each; one alarm in 200 runs is asked, and counted until the first of each robot.
+/// Seed 5; 500 robots of each layout, 120 scored runs each; one alarm in 200 runs is asked, and counted until the first of each robot.
 #[test]
 fn robots_that_do_not_change_are_accused_as_often_as_is_asked() {
     for components in 2..=COMPONENTS {
@@ -164,7 +165,7 @@ fn robots_that_do_not_change_are_accused_as_often_as_is_asked() {
                 (0, 0)
             };
             let add = |a: (usize, usize), b: (usize, usize)| (a.0 + b.0, a.1 + b.1);
-            let (alarms, runs) = (0..2000).into_par_iter().map(watch).reduce(|| (0, 0), add);
+            let (alarms, runs) = (0..trials(500)).into_par_iter().map(watch).reduce(|| (0, 0), add);
             let rate = alarms as f64 / runs as f64;
             println!("{components} components, {directions} directions: {alarms} alarms in {runs} runs, {rate:.5}");
             // Upwards 4 standard errors and 10 %; downwards more, because kinds overlap: in one direction, place and numbers are the same.
