@@ -395,19 +395,31 @@ fn a_gyro_that_turns_against_the_counts_accuses_nobody_and_says_what_may_be() {
 
 /// A decoder that counts every second edge of one wheel: a robot with such wheels fits the log, and none is built.
 #[test]
-fn one_wheel_with_half_its_counts_is_doubted() {
+fn one_wheel_with_half_its_counts_is_named() {
     let mut data = watched(&rough(&[]), 3, 2);
-    assert!(umbmark_core::setup::Setup::of(&data.runs, &Robot::labmate(), None).doubts.is_empty());
+    assert!(umbmark_core::setup::Setup::of(&data.runs, &Robot::labmate(), None).faults.is_empty());
     logs(&mut data).for_each(|log| log.right.iter_mut().for_each(|count| *count = (0.5 * *count).floor()));
     let setup = umbmark_core::setup::Setup::of(&data.runs, &Robot::labmate(), None);
-    assert!(
-        matches!(setup.doubts[..], [umbmark_core::setup::Suspicion::UnequalWheels { ratio }] if (ratio - 2.0).abs() < 0.1),
-        "{:?}",
-        setup.doubts
-    );
-    assert!(setup.doubts[0].forbids_writing() && setup.doubts[0].sentence().contains("wheel_diameter_left_m"));
+    assert_eq!(setup.faults, [umbmark_core::setup::Fault::OneCounter { name: "right", factor: 2.0 }]);
+    let refused = fit(&data, &asked(&Robot::labmate(), &[])).unwrap_err().to_string();
+    assert!(refused.contains("multiply ticks_right by 2") && refused.contains("wheel_diameter_left_m"), "{refused}");
     let learnt = umbmark_core::learn::learn(&data, &Default::default()).unwrap();
     assert_eq!(learnt.diagnosis.verdict, umbmark_core::diagnose::Verdict::NotExplained);
+}
+
+/// Wheels as no robot has them, which are no factor of a decoder.
+#[test]
+fn one_wheel_with_a_third_of_its_counts_is_doubted() {
+    let mut data = watched(&rough(&[]), 3, 2);
+    logs(&mut data).for_each(|log| log.right.iter_mut().for_each(|count| *count = (*count / 3.0).floor()));
+    let setup = umbmark_core::setup::Setup::of(&data.runs, &Robot::labmate(), None);
+    assert!(
+        matches!(setup.doubts[..], [umbmark_core::setup::Suspicion::UnequalWheels { ratio }] if (ratio - 3.0).abs() < 0.1),
+        "{:?} {:?}",
+        setup.doubts,
+        setup.faults
+    );
+    assert!(setup.doubts[0].forbids_writing() && setup.doubts[0].sentence().contains("wheel_diameter_left_m"));
 }
 
 /// Counts of a decoder that counts every fourth edge: wheelbase or wheels are wrong, and headings do not say which.

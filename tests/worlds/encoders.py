@@ -77,5 +77,5 @@ def in_columns(counts: Array, setting: Setting) -> Array:
     """Counts as they stand in the columns of the log, with wheels exchanged or reversed."""
     faults = setting.faults
     sign = np.array([-1 if faults.left_reversed else 1, -1 if faults.right_reversed else 1])
-    signed = counts * sign
+    signed = counts * sign * np.array([1 + faults.left_extra_edges, 1])
     return np.asarray(signed[:, ::-1] if faults.exchanged else signed)

@@ -73,6 +73,7 @@ def wheels_of(log: Array, setting: Setting) -> Array:
         left = -left
     if faults.right_reversed:
         right = -right
+    left = left / (1 + faults.left_extra_edges)
     return (np.stack([left, right]) - setting.recording.first_count) * setting.robot.tick_rad
 
 

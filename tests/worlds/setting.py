@@ -151,6 +151,8 @@ class Faults:
     exchanged: bool = False
     left_reversed: bool = False
     right_reversed: bool = False
+    left_extra_edges: int = 0
+    """Edges that the left counter counts beside each one of the right counter."""
     heading_clockwise: bool = False
     """The heading has the wrong sign; x and y are right."""
     mirrored: bool = False
@@ -193,7 +195,7 @@ class Faults:
     counts_commands: bool = False
     """Ticks are made from commanded speeds, not from the wheels' motion."""
 
-    COLUMNS = ("exchanged", "left_reversed", "right_reversed")
+    COLUMNS = ("exchanged", "left_reversed", "right_reversed", "left_extra_edges")
     FRAMES = ("heading_clockwise", "mirrored", "compass")
     UNITS = ("mm_as_m", "deg_as_rad")
 

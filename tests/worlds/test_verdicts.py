@@ -41,7 +41,10 @@ def found(world: str, seed: int, *overrides: str, inspected: bool = False) -> di
 
 @pytest.mark.parametrize(
     "world",
-    ["exchanged", "left_reversed", "right_reversed", "heading_clockwise", "mirrored", "mm_as_m"],
+    [
+        *("exchanged", "left_reversed", "right_reversed", "left_doubled"),
+        *("heading_clockwise", "mirrored", "mm_as_m"),
+    ],
 )
 def test_a_fault_of_columns_or_frames_is_named_and_nothing_is_called_explained(world: str) -> None:
     said = found(world, 1, inspected=True)

@@ -144,6 +144,7 @@ COLUMNS = {
     "exchanged": (["exchanged=false"], [[0, 1], [1, 0]]),
     "left_reversed": (["left_reversed=false"], [[-1, 0], [0, 1]]),
     "right_reversed": (["right_reversed=false"], [[1, 0], [0, -1]]),
+    "left_doubled": (["left_extra_edges=0"], [[2, 0], [0, 1]]),
     "both_reversed": (["left_reversed=false", "right_reversed=false"], [[-1, 0], [0, -1]]),
     "exchanged_reversed": (
         ["exchanged=false", "left_reversed=false", "right_reversed=false"],

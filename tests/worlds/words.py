@@ -8,6 +8,7 @@ FAULTS: dict[str, str] = {
     "mirrored": r"exchang|swapp|mirror|left-handed",
     "left_reversed": r"left[^.]{0,60}(backward|revers|down)|left_backward\W+true",
     "right_reversed": r"right[^.]{0,60}(backward|revers|down)|right_backward\W+true",
+    "left_extra_edges": r"ticks_left has [\d.]+ times",
     "both_reversed": r"both[^.]{0,60}(backward|revers|down)|(wheels|counters)[^.]{0,40}backward",
     # Exchanged and both reversed: the robot drives tail first, as a heading turned by half a turn.
     "exchanged_reversed": r"exchang|swapp|backward|tail|18\d(\.\d+)? deg|half a turn|marker_yaw",

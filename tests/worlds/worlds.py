@@ -325,6 +325,11 @@ WORLDS = {
             always(exchanged=True, left_reversed=True, right_reversed=True),
         ),
         World(
+            "left_doubled",
+            "the left counter counts two edges where the right one counts one",
+            always(left_extra_edges=1),
+        ),
+        World(
             "heading_clockwise",
             "heading with the wrong sign, x and y right",
             always(heading_clockwise=True),

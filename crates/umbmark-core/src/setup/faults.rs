@@ -266,7 +266,10 @@ impl Fault {
             Fault::OtherScale { .. } => "check the unit of the positions and [robot] in robot.toml".into(),
             Fault::Counts(factor) => factor.remedy(),
             Fault::OneCounter { name, factor } => {
-                format!("multiply ticks_{name} by {factor} (a decoder counts one, two or four edges of each line)")
+                format!(
+                    "multiply ticks_{name} by {factor} (a decoder counts one, two or four edges of each line); if the wheels do differ, write \
+                     wheel_diameter_left_m and wheel_diameter_right_m under [robot] in robot.toml as measured with a tape"
+                )
             }
             Fault::Standing { .. } => {
                 "check whether the columns of the ticks are those of the wheels, and ticks_per_revolution under [robot] in robot.toml".into()
@@ -316,7 +319,7 @@ impl Fault {
             Fault::HeadingInDegrees => "write the measured heading in radians".into(),
             Fault::HeadingInRadians => "write the measured heading in degrees".into(),
             Fault::Counts(factor) => format!("multiply all counts by {}", factor.nearest()),
-            Fault::OneCounter { .. } => self.remedy(),
+            Fault::OneCounter { name, factor } => format!("multiply ticks_{name} by {factor}"),
             _ => "check their columns".into(),
         }
     }
