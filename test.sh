@@ -14,6 +14,8 @@ package=crates/umbmark-py
 requirements=$package/requirements-test.txt
 
 section=''
+# Lints that run beside the build, and what they print.
+lints='' lint_log=''
 section_began=0
 
 end_section() {
@@ -34,13 +36,17 @@ stop() {
     exit 1
 }
 
-say_where_it_failed() {
+end() {
     local status=$?
+    if [ -n "$lints" ]; then
+        kill "$lints" 2> /dev/null || true
+        rm -f "$lint_log"
+    fi
     if [ "$status" -ne 0 ] && [ -n "$section" ]; then
         echo "test.sh: FAILED in: $section" >&2
     fi
 }
-trap say_where_it_failed EXIT
+trap end EXIT
 
 # Whether a component of Rust is there that rustup may have left out.
 has() {
@@ -97,7 +103,6 @@ fi
 
 begin 'Rust: lints and build'
 # Side by side, each in its profile: the largest crate is compiled last, and on one core.
-lints=''
 if has clippy clippy; then
     lint_log=$(mktemp)
     cargo clippy --workspace --all-targets -- -D warnings > "$lint_log" 2>&1 &
@@ -109,6 +114,7 @@ if [ -n "$lints" ]; then
     wait "$lints" || lints_failed=1
     cat "$lint_log"
     rm -f "$lint_log"
+    lints=''
     [ "$lints_failed" = 0 ] || stop 'clippy has found something (above)'
 fi
 

@@ -251,7 +251,8 @@ impl Setup {
         let all = pooled(&seen);
         let (faults, reading) = faults::look(&all, robot);
         let given = Agreement::without_drift(&all, reading, wheelbase);
-        if (0..2).any(|k| given.shown[k] && given.misfits[k] > faults::DOUBTFUL)
+        if Fault::heading_factor(&faults) == 1.0
+            && (0..2).any(|k| given.shown[k] && given.misfits[k] > faults::DOUBTFUL)
             && let Some(fault) = one_counter::found(&seen, robot)
         {
             return Setup { faults: vec![fault], runs: seen.iter().map(named).collect(), ..Setup::default() };

@@ -1,7 +1,10 @@
 //! Delay of the reference's time stamps, run by run.
 
+use super::Seen;
 use super::agreement::{Agreement, Beside, Reading};
 use super::windows::{Rolled, Rolling, Window};
+use crate::drive::Robot;
+use crate::run::TickLog;
 use crate::stats::Measured;
 use crate::stats::robust::{biweight, median, quantile};
 
@@ -69,6 +72,16 @@ impl Late {
 /// How the wheels rolled during the true time of each window.
 pub(super) fn beside(windows: &[Window], rolled: &Rolled, late: &Late) -> Vec<Beside> {
     windows.iter().map(|w| (*w, rolled.between(late.taken(w.from), late.taken(w.to)))).collect()
+}
+
+/// The same of runs whose ticks are read otherwise, as in these logs, each with a delay that is guessed anew.
+pub(super) fn reread(seen: &[Seen], logs: &[TickLog], robot: &Robot) -> Vec<Beside> {
+    let one = |(seen, log): (&Seen, &TickLog)| {
+        let rolled = Rolled::new(log, robot);
+        let late = guess(&seen.windows, &rolled, robot.drive.wheelbase());
+        beside(&seen.windows, &rolled, &late)
+    };
+    seen.iter().zip(logs).flat_map(one).collect()
 }
 
 /// First guess of the delay: the one at which the sizes of both motions correlate best, whatever the columns are called. Nothing if the

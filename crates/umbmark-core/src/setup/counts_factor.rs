@@ -42,11 +42,11 @@ impl CountsFactor {
         [2.0, 0.5].iter().any(|factor| (self.ratio / factor - 1.0).abs() < DOUBLE)
     }
 
-    /// What the counts of a run are off beside those of all runs, if that is a power of two.
+    /// The power of two by which the counts of a run are off beside those of all runs, if they are.
     pub(super) fn beside(&self, all: &CountsFactor) -> Option<CountsFactor> {
-        let own = CountsFactor { ratio: self.ratio / all.ratio, ..*self };
-        let power = libm::log2(own.ratio).round();
-        (power != 0.0 && (own.ratio / libm::exp2(power) - 1.0).abs() < DOUBLE).then_some(own)
+        let ratio = self.ratio / all.ratio;
+        let power = libm::exp2(libm::log2(ratio).round());
+        (power != 1.0 && (ratio / power - 1.0).abs() < DOUBLE).then(|| CountsFactor { ratio: power, ..*self })
     }
 
     /// The usual factor that is near, or the ratio itself.

@@ -1,7 +1,6 @@
 //! Counts since the row before, in columns of counts since the beginning.
 
 use super::agreement::Agreement;
-use super::windows::Rolled;
 use super::{Fault, Seen, clock, faults};
 use crate::drive::Robot;
 use crate::run::TickLog;
@@ -9,12 +8,7 @@ use crate::run::TickLog;
 /// The fault that counts are increments: as they are they do not agree with the reference, and their running sums do.
 pub(super) fn found(seen: &[Seen], robot: &Robot) -> Option<Fault> {
     let sums: Vec<TickLog> = seen.iter().map(|seen| added_up(seen.log)).collect();
-    let beside = seen.iter().zip(&sums).flat_map(|(seen, log)| {
-        let rolled = Rolled::new(log, robot);
-        let late = clock::guess(&seen.windows, &rolled, robot.drive.wheelbase());
-        clock::beside(&seen.windows, &rolled, &late)
-    });
-    let beside: Vec<_> = beside.collect();
+    let beside = clock::reread(seen, &sums, robot);
     let (faults, reading) = faults::look(&beside, robot);
     let agreement = Agreement::without_drift(&beside, reading, robot.drive.wheelbase());
     let agrees = agreement.is_credible() && agreement.misfit < faults::DOUBTFUL;

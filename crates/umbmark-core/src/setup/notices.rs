@@ -23,7 +23,7 @@ impl Setup {
         notices
     }
 
-    /// By how much the poses of runs are later than those of the median run, where each run was laid on its own clock; the first [`TOLD`].
+    /// By how much the poses of runs are later than those of the median run, where each run was laid on its own clock; of the [`TOLD`] that are farthest from it.
     pub fn clocks(&self) -> Option<String> {
         let mut own: Vec<&RunSetup> = self.runs.iter().filter(|run| run.own_clock != 0.0).collect();
         own.sort_by(|a, b| b.own_clock.abs().total_cmp(&a.own_clock.abs()));

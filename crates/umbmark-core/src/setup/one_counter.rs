@@ -1,7 +1,6 @@
 //! One of two counters whose counts are a factor off: a decoder that counts one edge of each line where the other counts two or four.
 
-use super::agreement::{Agreement, Beside, Reading};
-use super::windows::Rolled;
+use super::agreement::{Agreement, Reading};
 use super::{Fault, Seen, clock, faults};
 use crate::drive::Robot;
 use crate::run::TickLog;
@@ -19,12 +18,7 @@ pub(super) fn found(seen: &[Seen], robot: &Robot) -> Option<Fault> {
     let wheelbase = robot.drive.wheelbase();
     let tried = FACTORS.into_iter().flat_map(|factor| [(0, factor), (1, factor)]).map(|(wheel, factor)| {
         let logs: Vec<TickLog> = seen.iter().map(|seen| multiplied(seen.log, wheel, factor)).collect();
-        let beside = seen.iter().zip(&logs).flat_map(|(seen, log)| {
-            let rolled = Rolled::new(log, robot);
-            let late = clock::guess(&seen.windows, &rolled, wheelbase);
-            clock::beside(&seen.windows, &rolled, &late)
-        });
-        let agreement = Agreement::without_drift(&beside.collect::<Vec<Beside>>(), Reading::default(), wheelbase);
+        let agreement = Agreement::without_drift(&clock::reread(seen, &logs, robot), Reading::default(), wheelbase);
         (agreement, Fault::OneCounter { name: robot.drive.kind().counters()[wheel], factor })
     });
     let agrees = |(found, _): &(Agreement, Fault)| {

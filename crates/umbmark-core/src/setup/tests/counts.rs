@@ -44,6 +44,16 @@ fn multiplied(mut runs: Vec<Run>, which: impl Fn(usize) -> bool, factors: [f64; 
     runs
 }
 
+/// Runs of one decoder setting among runs of another are one kind, whatever their own errors are.
+#[test]
+fn two_runs_with_doubled_counts_are_one_fault() {
+    let runs = Drive { runs: 7, ..clean() }.runs();
+    let found = Setup::of(&multiplied(runs.clone(), |index| index < 2, [2.0; 2]), &robot(), None).faults;
+    let [Fault::InRuns { runs: named, fault }] = &found[..] else { panic!("{found:?}") };
+    assert_eq!(named, &[runs[0].name.clone(), runs[1].name.clone()]);
+    assert!(matches!(**fault, Fault::Counts(factor) if factor.ratio == 0.5), "{fault:?}");
+}
+
 /// Free drives and drives after points, seeds 320 and 321.
 #[test]
 fn one_counter_of_two_that_is_a_factor_off_is_named_with_what_it_has_to_be_multiplied_by() {
