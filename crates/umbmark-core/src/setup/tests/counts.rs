@@ -44,14 +44,13 @@ fn multiplied(mut runs: Vec<Run>, which: impl Fn(usize) -> bool, factors: [f64; 
     runs
 }
 
-/// Runs of one decoder setting among runs of another are one kind, whatever their own errors are.
+/// Runs of one decoder setting are one kind, whatever their own errors are.
 #[test]
-fn two_runs_with_doubled_counts_are_one_fault() {
-    let runs = Drive { runs: 7, ..clean() }.runs();
-    let found = Setup::of(&multiplied(runs.clone(), |index| index < 2, [2.0; 2]), &robot(), None).faults;
-    let [Fault::InRuns { runs: named, fault }] = &found[..] else { panic!("{found:?}") };
-    assert_eq!(named, &[runs[0].name.clone(), runs[1].name.clone()]);
-    assert!(matches!(**fault, Fault::Counts(factor) if factor.ratio == 0.5), "{fault:?}");
+fn a_run_is_off_by_a_power_of_two_beside_the_others_or_not_at_all() {
+    let factor = |ratio| CountsFactor { ratio, nominal: 20_000.0 };
+    let beside = |ratio| factor(ratio).beside(&factor(1.01)).map(|own| own.ratio);
+    assert_eq!([0.498, 0.51, 4.1].map(beside), [Some(0.5), Some(0.5), Some(4.0)]);
+    assert_eq!([0.95, 1.3, 0.56].map(beside), [None; 3]);
 }
 
 /// Free drives and drives after points, seeds 320 and 321.
