@@ -46,7 +46,7 @@ impl CountsFactor {
     pub(super) fn beside(&self, all: &CountsFactor) -> Option<CountsFactor> {
         let ratio = self.ratio / all.ratio;
         let power = libm::exp2(libm::log2(ratio).round());
-        (power != 1.0 && (ratio / power - 1.0).abs() < DOUBLE).then(|| CountsFactor { ratio: power, ..*self })
+        (power != 1.0 && (ratio / power - 1.0).abs() < DOUBLE).then_some(CountsFactor { ratio: power, ..*self })
     }
 
     /// The usual factor that is near, or the ratio itself.
