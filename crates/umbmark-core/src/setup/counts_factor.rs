@@ -42,9 +42,17 @@ impl CountsFactor {
         [2.0, 0.5].iter().any(|factor| (self.ratio / factor - 1.0).abs() < DOUBLE)
     }
 
-    /// The power of two by which the counts of a run are off beside those of all runs, if they are.
-    pub(super) fn beside(&self, all: &CountsFactor) -> Option<CountsFactor> {
-        let ratio = self.ratio / all.ratio;
+    /// The factor that most runs have, to a power of two; among equally many runs, the one that is nearest to 1.
+    pub(super) fn of_most(runs: &[CountsFactor]) -> Option<CountsFactor> {
+        let alike = |one: &CountsFactor| runs.iter().filter(|other| other.beside(one).is_none()).count();
+        let off = |one: &CountsFactor| libm::log(one.ratio).abs();
+        let better = |a: &&CountsFactor, b: &&CountsFactor| alike(a).cmp(&alike(b)).then(off(b).total_cmp(&off(a)));
+        runs.iter().max_by(better).copied()
+    }
+
+    /// The power of two by which the counts of a run are off beside those of others, if they are.
+    pub(super) fn beside(&self, others: &CountsFactor) -> Option<CountsFactor> {
+        let ratio = self.ratio / others.ratio;
         let power = libm::exp2(libm::log2(ratio).round());
         (power != 1.0 && (ratio / power - 1.0).abs() < DOUBLE).then_some(CountsFactor { ratio: power, ..*self })
     }

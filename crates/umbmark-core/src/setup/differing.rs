@@ -28,7 +28,7 @@ pub(super) fn faults(
         return None;
     }
     // Each run by itself, if its motion then agrees and determines distance and rotation; and those that agree in no reading.
-    let mut kinds: Vec<(Vec<Fault>, Vec<String>)> = Vec::new();
+    let mut alone: Vec<(&str, Vec<Fault>, Option<CountsFactor>)> = Vec::new();
     let (mut strange, mut least): (Vec<String>, f64) = (Vec::new(), f64::INFINITY);
     for (name, own) in runs.iter().filter(|(_, own)| own.len() >= FEWEST) {
         let (faults, own_reading) = look(own, robot);
@@ -46,10 +46,17 @@ pub(super) fn faults(
             }
             continue;
         }
-        let faults = if faults.is_empty() { other_counts(&found, &agreed, robot) } else { faults };
+        alone.push((*name, faults, CountsFactor::of(&found, robot)));
+    }
+    let usual = CountsFactor::of_most(&alone.iter().filter_map(|(_, _, counts)| *counts).collect::<Vec<_>>());
+    let mut kinds: Vec<(Vec<Fault>, Vec<String>)> = Vec::new();
+    for (name, mut faults, counts) in alone {
+        if faults.is_empty() {
+            faults.extend(counts.zip(usual).and_then(|(own, others)| own.beside(&others)).map(Fault::Counts));
+        }
         match kinds.iter_mut().find(|(own, _)| *own == faults) {
-            Some((_, same)) => same.push((*name).to_owned()),
-            None => kinds.push((faults, vec![(*name).to_owned()])),
+            Some((_, same)) => same.push(name.to_owned()),
+            None => kinds.push((faults, vec![name.to_owned()])),
         }
     }
     // Others must agree: if none do, nothing is known of any.
@@ -62,11 +69,4 @@ pub(super) fn faults(
         faults.push(Fault::InRuns { fault: Box::new(Fault::OtherMotion { misfit: least }), runs: strange });
     }
     (!faults.is_empty()).then_some(faults)
-}
-
-/// The fault of a run that agrees with the reference, whose counts are twice or half of those of the others, or a power of two of them.
-fn other_counts(found: &Agreement, agreed: &Agreement, robot: &Robot) -> Vec<Fault> {
-    let of = |agreement: &Agreement| CountsFactor::of(agreement, robot);
-    let factor = of(found).zip(of(agreed)).and_then(|(own, others)| own.beside(&others));
-    factor.map(Fault::Counts).into_iter().collect()
 }

@@ -71,13 +71,21 @@ fn one_counter_of_two_that_is_a_factor_off_is_named_with_what_it_has_to_be_multi
     }
 }
 
+/// However many runs they are: those that most runs agree with are right, and among equally many, those that agree with robot.toml.
 #[test]
-fn counts_of_one_run_that_are_a_factor_off_are_named_with_the_run() {
-    let runs = clean().runs();
-    for (factors, line) in [([2.0, 2.0], "multiply all counts by 0.5"), ([0.25, 0.25], "multiply all counts by 4")] {
-        let found = Setup::of(&multiplied(runs.clone(), |index| index == 1, factors), &robot(), None).faults;
-        let [fault @ Fault::InRuns { runs: named, .. }] = &found[..] else { panic!("{factors:?}: {found:?}") };
-        assert_eq!(named, &[runs[1].name.clone()]);
-        assert!(fault.remedy().contains(line), "{}", fault.remedy());
+fn counts_of_some_runs_that_are_a_factor_off_are_named_with_the_runs() {
+    let runs = Drive { runs: 6, ..clean() }.runs();
+    for wrong in [&[1][..], &[1, 4], &[0, 2, 5]] {
+        for (factor, line) in
+            [(2.0, "multiply all counts by 0.5"), (0.5, "multiply all counts by 2"), (0.25, "multiply all counts by 4")]
+        {
+            let mixed = multiplied(runs.clone(), |index| wrong.contains(&index), [factor; 2]);
+            let found = Setup::of(&mixed, &robot(), None).faults;
+            let [fault @ Fault::InRuns { runs: named, .. }] = &found[..] else {
+                panic!("{wrong:?} times {factor}: {found:?}")
+            };
+            assert_eq!(named, &wrong.iter().map(|index| runs[*index].name.clone()).collect::<Vec<_>>());
+            assert!(fault.remedy().contains(line), "{}", fault.remedy());
+        }
     }
 }
