@@ -22,7 +22,7 @@ use crate::setup::{Fault, Setup};
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
-pub(crate) use drives::{Drive, end_poses, tracked};
+pub(crate) use drives::{Drive, end_poses, predict, tracked};
 pub(crate) use ends::Ends;
 pub use error::FitError;
 pub(crate) use fitted::correlations;

@@ -18,7 +18,7 @@ use super::observations::Observations;
 use crate::dataset::ReturnError;
 use crate::drive::Robot;
 use crate::effect::{Evaluate, Model};
-use crate::evidence::{Drive, FAR_FIT, Level, STARTS, is_possible};
+use crate::evidence::{self, Drive, FAR_FIT, Level, STARTS, is_possible};
 use crate::fit::{self, Fit, Problem, RANK_TOLERANCE, jackknife_covariance, null_directions};
 use crate::geometry::{Dual, Pose2, seeded, wrap};
 use crate::likelihood::Taken;
@@ -189,11 +189,8 @@ impl Kinematics<'_> {
     }
 
     /// Calls `row_of` with drive, observation and predicted pose of each observation.
-    fn predict<T: Evaluate>(&self, values: &[T], mut observed: impl FnMut(&Drive, usize, &Pose2<T>)) {
-        let chain = self.model.chain_with(values);
-        for drive in &self.observed.drives {
-            drive.track.replay(&chain, |observation, pose| observed(drive, observation, pose));
-        }
+    fn predict<T: Evaluate>(&self, values: &[T], observed: impl FnMut(&Drive, usize, &Pose2<T>)) {
+        evidence::predict(&self.observed.drives, &self.model.chain_with(values), observed);
     }
 }
 
@@ -220,8 +217,9 @@ impl Problem for Kinematics<'_> {
         self.predict::<Dual>(&seeded(values, &lanes), |drive, observation, pose| {
             let slopes = DMatrix::from_fn(3, self.free.len(), |k, lane| -[pose.x, pose.y, pose.heading][k].eps[lane]);
             let weighted = drive.weight * slopes;
-            let of_row = |row: usize| weighted.row(row).iter().copied().collect::<Vec<_>>();
-            rows.extend((0..rows_of(drive.seen[observation].heading)).flat_map(of_row));
+            for row in 0..rows_of(drive.seen[observation].heading) {
+                rows.extend(weighted.row(row).iter());
+            }
         });
         DMatrix::from_row_slice(self.count(), self.free.len(), &rows)
     }

@@ -3,11 +3,12 @@
 use super::{FitError, noise_shape};
 use crate::dataset::{Dataset, Run};
 use crate::drive::Robot;
-use crate::effect::{Model, TestKind};
+use crate::effect::{Chain, Evaluate, Model, TestKind};
 use crate::geometry::Pose2;
 use crate::path::Direction;
 use crate::replay::Track;
 use nalgebra::Matrix3;
+use std::sync::Arc;
 
 /// An absolute pose.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +24,8 @@ pub(crate) struct Drive {
     /// The run's name.
     pub name: String,
     pub direction: Option<Direction>,
-    pub track: Track,
+    /// What its wheels did. Drives of which only the path is known share the track of their direction.
+    pub track: Arc<Track>,
     pub seen: Vec<Seen>,
     /// Multiplies observed minus predicted (x, y, heading); lower triangular.
     pub weight: Matrix3<f64>,
@@ -31,11 +33,36 @@ pub(crate) struct Drive {
     pub recorded: bool,
 }
 
+impl Drive {
+    /// Whether the wheels did the same as in another one.
+    pub fn rolls_as(&self, track: &Arc<Track>) -> bool {
+        Arc::ptr_eq(&self.track, track) || *self.track == **track
+    }
+}
+
+/// Calls `seen` with each drive, the number of each of its observations, and the pose predicted for it. A track that drives share is replayed
+/// once.
+pub(crate) fn predict<T: Evaluate>(drives: &[Drive], chain: &Chain<T>, mut seen: impl FnMut(&Drive, usize, &Pose2<T>)) {
+    let mut shared: Vec<(&Arc<Track>, Vec<Pose2<T>>)> = Vec::new();
+    for drive in drives {
+        if drive.recorded {
+            drive.track.replay(chain, |observation, pose| seen(drive, observation, pose));
+            continue;
+        }
+        let known = shared.iter().position(|(track, _)| Arc::ptr_eq(track, &drive.track));
+        let known = known.unwrap_or_else(|| {
+            shared.push((&drive.track, drive.track.poses(chain)));
+            shared.len() - 1
+        });
+        shared[known].1.iter().enumerate().for_each(|(observation, pose)| seen(drive, observation, pose));
+    }
+}
+
 /// The end poses of the regular test, weighted by the shape of their scatter; headings only where every run has one.
 pub(crate) fn end_poses(data: &Dataset, robot: &Robot) -> Result<Vec<Drive>, FitError> {
     check_path(data, robot)?;
     let mut drives = Vec::with_capacity(data.runs.len());
-    let mut commanded = [None, None];
+    let mut commanded = Commanded::default();
     for run in data.runs.iter().filter(|run| run.test == TestKind::Systematic) {
         drives.extend(ended(run, data, robot, &mut commanded)?);
     }
@@ -46,7 +73,7 @@ pub(crate) fn end_poses(data: &Dataset, robot: &Robot) -> Result<Vec<Drive>, Fit
         drives.iter_mut().flat_map(|d| &mut d.seen).for_each(|s| s.heading = None);
     }
     for i in 0..drives.len() {
-        let alike = (0..i).find(|j| drives[*j].track == drives[i].track);
+        let alike = (0..i).find(|j| drives[*j].rolls_as(&drives[i].track));
         drives[i].weight = alike.map_or_else(|| end_weight(&drives[i], robot), |j| drives[j].weight);
     }
     Ok(drives)
@@ -75,7 +102,7 @@ pub(crate) fn tracked(run: &Run, robot: &Robot) -> Result<Option<Drive>, FitErro
     Ok(track.map(|track| Drive {
         name: run.name.clone(),
         direction: run.direction,
-        track,
+        track: Arc::new(track),
         seen,
         weight: Matrix3::identity(),
         recorded: true,
@@ -87,24 +114,26 @@ fn track_of(run: &Run, robot: &Robot) -> Result<Option<Track>, FitError> {
     run.log.as_ref().map(replayed).transpose()
 }
 
+/// The tracks of a path, by its direction, and where the nominal robot ends on them.
+type Commanded = [Option<(Arc<Track>, Pose2)>; 2];
+
 /// A run with its return error, as the absolute pose at the end of what was recorded or, without ticks, of the path.
 /// Tracks of the path are made once a direction, in `commanded`.
-fn ended(
-    run: &Run,
-    data: &Dataset,
-    robot: &Robot,
-    commanded: &mut [Option<Track>; 2],
-) -> Result<Option<Drive>, FitError> {
+fn ended(run: &Run, data: &Dataset, robot: &Robot, commanded: &mut Commanded) -> Result<Option<Drive>, FitError> {
     let Some(error) = run.returned else { return Ok(None) };
+    let with_end = |track: Track| {
+        let end = track.end(&Model::new(robot).chain());
+        (Arc::new(track), end)
+    };
     let recorded = track_of(run, robot)?;
     let is_recorded = recorded.is_some();
     let from_path = || {
         let (path, direction) = (data.path.as_ref()?, run.direction.unwrap_or(Direction::Ccw));
-        let track = commanded[direction as usize].get_or_insert_with(|| Track::from_path(path, direction, robot));
-        Some(track.clone())
+        let made = || with_end(Track::from_path(path, direction, robot));
+        Some(commanded[direction as usize].get_or_insert_with(made).clone())
     };
-    let Some(track) = recorded.map(Track::cut_at_last).or_else(from_path) else { return Ok(None) };
-    let computed: Pose2 = track.end(&Model::new(robot).chain());
+    let own = recorded.map(|track| with_end(track.cut_at_last()));
+    let Some((track, computed)) = own.or_else(from_path) else { return Ok(None) };
     let heading = error.heading.map(|h| computed.heading + h);
     let seen = vec![Seen { x: computed.x + error.x, y: computed.y + error.y, heading }];
     Ok(Some(Drive {

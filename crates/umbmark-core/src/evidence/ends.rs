@@ -61,7 +61,7 @@ pub(crate) struct End {
 /// The track that the odometry reports, cut into the largest pieces that the effects allow.
 #[derive(Debug)]
 struct Believed {
-    whole: Track,
+    whole: Arc<Track>,
     /// `None` for a recorded track, which is already in small pieces.
     pieces: Option<Track>,
 }
@@ -114,7 +114,7 @@ impl Ends {
     fn push(&mut self, drive: Drive) {
         let direction = drive.direction.unwrap_or(Direction::Ccw);
         let Some(seen) = drive.seen.last() else { return };
-        let known = self.tracks.iter().position(|t| t.whole == drive.track);
+        let known = self.tracks.iter().position(|t| drive.rolls_as(&t.whole));
         let track = known.unwrap_or_else(|| {
             let path = self.path.as_ref().filter(|_| !drive.recorded);
             let pieces = path.map(|path| Track::in_pieces(path, direction, &self.robot));
@@ -138,7 +138,7 @@ impl Ends {
             return self.clone();
         }
         let meant = |direction: Direction| Believed {
-            whole: Track::from_path(path, direction, &self.robot),
+            whole: Arc::new(Track::from_path(path, direction, &self.robot)),
             pieces: Some(Track::in_pieces(path, direction, &self.robot)),
         };
         let mut ends = self.clone();
