@@ -6,8 +6,8 @@ use crate::drive::Robot;
 use crate::parameter::Parameter;
 use umbmark_odometry::law::MissedCounts;
 
-/// Of a wheel that misses counts, the other may seem to count this share of it twice.
-const OPPOSED: f64 = 0.3;
+/// Of a wheel that misses counts, the other may seem to count this share of it twice; and of one that counts twice, the other this share.
+const OTHER: f64 = 0.3;
 
 pub(super) static EFFECT: Entry = Entry::of::<MissedCounts>().wheels::<MissedCounts>();
 
@@ -62,10 +62,11 @@ impl Effect for MissedCounts {
         )
     }
 
-    /// Where one wheel misses about as much as the other counts twice, it is no counter that fails but a law of the yaw.
+    /// Where one wheel misses about as much as the other counts twice, it is no counter that fails but a law of the yaw. Where both count
+    /// twice about alike, these are wheels that slip, by another law of the speed than those of slip: fewer metres than counts.
     fn is_credible(p: &[f64]) -> bool {
         let [less, more] = if p[0].abs() < p[1].abs() { [p[0], p[1]] } else { [p[1], p[0]] };
-        less * more >= 0.0 || less.abs() < OPPOSED * more.abs()
+        less >= 0.0 && more >= 0.0 || less.abs() < OTHER * more.abs()
     }
 
     fn varies(p: &[f64]) -> bool {
@@ -98,10 +99,10 @@ mod tests {
     }
 
     #[test]
-    fn a_wheel_that_counts_twice_what_the_other_misses_is_no_fault_of_counters() {
+    fn a_wheel_that_counts_twice_what_the_other_misses_or_counts_twice_is_no_fault_of_counters() {
         let credible = |left: f64, right: f64| MissedCounts::is_credible(&[left, right, 0.1]);
-        assert!(credible(0.01, 0.0) && credible(0.01, 0.02) && credible(-0.01, -0.02) && credible(0.01, -0.002));
-        assert!(!credible(0.01, -0.01) && !credible(-0.005, 0.004));
+        assert!(credible(0.01, 0.0) && credible(0.01, 0.02) && credible(-0.002, -0.02) && credible(0.01, -0.002));
+        assert!(!credible(0.01, -0.01) && !credible(-0.005, 0.004) && !credible(-0.01, -0.02));
     }
 
     #[test]
