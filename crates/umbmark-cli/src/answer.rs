@@ -4,6 +4,7 @@ use umbmark_core::solve::{Change, Measure, Part, Solution};
 
 use crate::prose::hanging;
 use crate::table::{table, with_precision_of};
+use crate::words::ACTIONS;
 
 /// The sentence, the new numbers, and what to do next.
 pub fn answer_text(solution: &Solution, level: f64) -> String {
@@ -23,7 +24,7 @@ pub fn answer_text(solution: &Solution, level: f64) -> String {
     if solution.assumes_scale() {
         text += &hanging("", 0, "These hold if the mean wheel diameter is right: the runs do not show it.");
     }
-    let next = solution.next();
+    let next = solution.next(ACTIONS);
     if !next.is_empty() {
         text += "\nnext\n";
         for (number, step) in next.iter().enumerate() {

@@ -21,6 +21,8 @@ pub use crate::plan_report::{Known, Report as Plan, Separation};
 pub use crate::sensitivity_report::SensitivityReport as Sensitivity;
 pub use crate::verb::tolerance::Report as Tolerance;
 
+pub use crate::words::ACTIONS;
+
 use crate::answer::answer_text;
 use crate::ensemble_report::Report;
 use crate::plan_report;

@@ -113,7 +113,7 @@ pub struct Dataset {
 
 /// A dataset without the robot that the question needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the nominal robot is not known: no robot.toml beside the data; `umbmark init` writes one to fill in")]
+#[error("the nominal robot is not known: no robot.toml beside the data")]
 pub struct NoRobot;
 
 /// The columns of a return sheet: what is measured at the end of each run.

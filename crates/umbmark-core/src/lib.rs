@@ -11,6 +11,7 @@
 //!
 //! Nothing here reads or writes files, prints, parses flags or knows Python.
 
+pub mod action;
 pub mod apply;
 pub mod calibrate;
 pub mod changed;
@@ -39,6 +40,7 @@ pub mod prose;
 pub mod random;
 pub mod reference;
 mod register;
+pub mod remedy;
 pub mod replay;
 pub mod result;
 pub mod run;

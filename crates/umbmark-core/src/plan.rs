@@ -75,7 +75,7 @@ pub enum PlanError {
         value: usize,
     },
     /// A size that no effect has.
-    #[error("no effect has a size \"{name}\"{}; `umbmark effects` lists them", nearest.map(|n| format!("; did you mean \"{n}\"?")).unwrap_or_default())]
+    #[error("no effect has a size \"{name}\"{}", nearest.map(|n| format!("; did you mean \"{n}\"?")).unwrap_or_default())]
     UnknownSize {
         /// The name that was given.
         name: String,

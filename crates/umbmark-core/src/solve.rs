@@ -25,6 +25,7 @@ pub(crate) use off::Meter;
 pub use off::{Measure, Off, Part};
 pub use others::Other;
 
+use crate::action::Wording;
 use crate::calibrate::{self, CalibrateError, Calibration, Correction, Estimate};
 use crate::dataset::Dataset;
 use crate::diagnose::{Options, Verdict};
@@ -235,9 +236,9 @@ impl Solution {
         words::sentence(self)
     }
 
-    /// What to do next, a sentence each, the most urgent first.
-    pub fn next(&self) -> Vec<String> {
-        words::next(self)
+    /// What to do next, a sentence each, the most urgent first, with what an edge calls its actions.
+    pub fn next(&self, words: Wording) -> Vec<String> {
+        words::next(self, words)
     }
 }
 

@@ -30,7 +30,7 @@ const LEAST_TURN: f64 = 0.5;
 
 /// Said where nobody has filled in the robot.toml of the template.
 const UNTOUCHED: &str =
-    "robot.toml has the numbers of an example, as `umbmark init` wrote it: give those of your robot, and its name";
+    "robot.toml still has the numbers of the example that it began as: give those of your robot, and its name";
 
 /// A dataset in the making.
 pub(super) struct Assembly {

@@ -100,11 +100,16 @@ impl<'a> Table<'a> {
 
     /// The error of a key that is not there.
     pub fn missing(&self, key: &str, example: &str) -> DatasetError {
-        At::new(self.source.file, self.line).refuse(LineProblem::MissingKey {
+        self.refuse(LineProblem::MissingKey {
             table: self.name.clone(),
             key: key.to_owned(),
             example: example.to_owned(),
         })
+    }
+
+    /// What is wrong with the table as a whole.
+    pub fn refuse(&self, problem: LineProblem) -> DatasetError {
+        At::new(self.source.file, self.line).refuse(problem)
     }
 
     /// The one entry among keys that mean the same, if any is there.
@@ -216,16 +221,17 @@ impl<'a> Entry<'a> {
 
     /// The same for a value that goes by another name than its key.
     pub fn wrong_value(&self, key: String, allowed: &str, remedy: &str) -> DatasetError {
-        At::new(self.source.file, self.line()).refuse(LineProblem::Value {
-            key,
-            value: self.shown(),
-            allowed: allowed.into(),
-            remedy: remedy.into(),
-        })
+        let (allowed, remedy) = (allowed.into(), remedy.into());
+        self.refuse(LineProblem::Value { key, value: self.shown(), allowed, remedy })
+    }
+
+    /// What is wrong with the entry.
+    pub fn refuse(&self, problem: LineProblem) -> DatasetError {
+        At::new(self.source.file, self.line()).refuse(problem)
     }
 
     /// The value as it stands in the file, shortened.
-    fn shown(&self) -> String {
+    pub fn shown(&self) -> String {
         let raw = self.source.text.get(self.value.span()).unwrap_or("").trim();
         let plain = raw.len() <= 40 && !raw.is_empty() && raw.chars().all(|c| !c.is_control());
         if plain { raw.to_owned() } else { quoted(raw) }

@@ -3,7 +3,9 @@
 use super::layout::messages::LogProblem;
 use super::remedy::{Remedy, Words};
 use std::fmt;
+use umbmark_core::action::Action;
 use umbmark_core::dataset::NoRobot;
+use umbmark_core::remedy;
 
 /// What makes a dataset, a robot file or a model file unusable.
 ///
@@ -43,14 +45,14 @@ pub enum DatasetError {
         remedy: Remedy,
     },
     /// A file or folder that is no dataset.
-    #[error("{file}: is not a dataset: {found}; {remedy}")]
+    #[error("{file}: is not a dataset: {found}; {}", .remedy.worded(&Words::PLAIN))]
     NotADataset {
         /// The file or folder.
         file: String,
         /// What is there.
         found: String,
         /// What to do.
-        remedy: &'static str,
+        remedy: Remedy,
     },
     /// A dataset without the robot that the question needs.
     #[error(transparent)]
@@ -84,14 +86,14 @@ pub enum DatasetError {
         remedy: &'static str,
     },
     /// A place without a log that could be begun from.
-    #[error("{file}: {found}; {remedy}")]
+    #[error("{file}: {found}; {}", .remedy.worded(&Words::PLAIN))]
     NoLogs {
         /// The place.
         file: String,
         /// What is there.
         found: String,
         /// What to do.
-        remedy: &'static str,
+        remedy: Remedy,
     },
     /// A track with a clock of its own that the motion does not set.
     #[error("{file}: {reason}")]
@@ -361,6 +363,15 @@ pub enum LineProblem {
         /// The line of the first.
         first_line: usize,
     },
+    /// An effect that the catalogue does not have, nor one of a similar name.
+    #[error("name must be the name of an effect, got {name}")]
+    UnknownEffect {
+        /// The name, quoted.
+        name: String,
+    },
+    /// An effect without its name.
+    #[error("[[effect]] has no name; add e.g. name = \"wheelbase\"")]
+    NoEffectName,
     /// A value that cannot be.
     #[error("{key} must be {allowed}, got {value}{}", after(remedy))]
     Value {
@@ -414,6 +425,14 @@ impl DatasetError {
         match self {
             DatasetError::AlreadyThere { file, remedy } => {
                 format!("{file}: is there already; {}", remedy.worded(words))
+            }
+            DatasetError::NotADataset { file, found, remedy } => {
+                format!("{file}: is not a dataset: {found}; {}", remedy.worded(words))
+            }
+            DatasetError::NoLogs { file, found, remedy } => format!("{file}: {found}; {}", remedy.worded(words)),
+            DatasetError::NoRobot(error) => format!("{error}{}", words.behind(remedy::of(error))),
+            DatasetError::Line { problem: LineProblem::UnknownEffect { .. } | LineProblem::NoEffectName, .. } => {
+                format!("{self}{}", words.behind(Some(Action::ListEffects)))
             }
             DatasetError::Messages { file, problem } => format!("{file}: {}", problem.worded(words)),
             _ => self.to_string(),

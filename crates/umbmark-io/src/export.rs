@@ -17,7 +17,7 @@ use umbmark_core::effect::{Changes, Model, ModelError, Part};
 use umbmark_core::geometry::Pose2;
 use umbmark_core::likelihood::Noise;
 use umbmark_core::parameter::Parameter;
-use umbmark_core::register;
+use umbmark_core::{register, remedy};
 
 register! {
     /// Every target there is.
@@ -153,6 +153,8 @@ impl ExportError {
             ExportError::NoFile { target, remedy } => {
                 format!("{target}: the file to edit is missing{}", after(Some(remedy), words))
             }
+            ExportError::Model(error) => format!("{self}{}", words.behind(remedy::of(error))),
+            ExportError::Compile(error) => format!("{self}{}", words.behind(remedy::of(error))),
             other => other.to_string(),
         }
     }

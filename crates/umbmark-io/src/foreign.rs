@@ -98,7 +98,7 @@ impl Foreign {
 
     /// The error of a file that should have been a text.
     pub fn refused(&self, file: &str) -> DatasetError {
-        DatasetError::NotADataset { file: file.to_owned(), found: self.found(), remedy: self.remedy }
+        DatasetError::NotADataset { file: file.to_owned(), found: self.found(), remedy: self.remedy.into() }
     }
 
     /// What it is, and what to do, behind the words for why it was not read.

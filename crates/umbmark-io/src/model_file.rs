@@ -2,7 +2,7 @@
 
 use super::distribution_table::{DISTRIBUTIONS, read_distribution};
 use super::document::{Entry, Source, Table};
-use super::error::{DatasetError, did_you_mean};
+use super::error::{DatasetError, LineProblem, did_you_mean};
 use super::robot_file::read_robot_table;
 use super::source::read_text;
 use umbmark_core::drive::Robot;
@@ -16,7 +16,7 @@ const OWN: [&str; 6] = ["acts_on", "formula", "parameters", "name", "free", "fix
 
 /// What is missing in a model of nobody.
 const WHOSE: &str =
-    "a table [robot] as in robot.toml, the nominal robot that the numbers belong to (`umbmark learn -o` writes it)";
+    "a table [robot] as in robot.toml, the nominal robot that the numbers belong to (learnt and fitted models have it)";
 
 /// What a `model.toml` says.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,7 +120,7 @@ fn read_effects(root: &Table, robot: &Robot) -> Result<(Model, Vec<Draw>), Datas
     let Some(effects) = root.get("effect") else { return Ok((model, draws)) };
     for effect in effects.list("a list of tables, each headed [[effect]]")? {
         let table = effect.table("[[effect]]".into())?;
-        let name = table.need("name", "e.g. name = \"wheelbase\" (`umbmark effects` lists them)")?;
+        let name = table.get("name").ok_or_else(|| table.refuse(LineProblem::NoEffectName))?;
         let same = |other: &&Entry| other.word("").ok() == name.word("").ok();
         if let Some(first) = names.iter().find(same) {
             return Err(first.again(&name));
@@ -141,8 +141,10 @@ fn find(name: &Entry) -> Result<&'static Effect, DatasetError> {
         return Ok(entry);
     }
     let near = did_you_mean(word, CATALOGUE.iter().map(|entry| entry.about.name));
-    let remedy = if near.is_empty() { "`umbmark effects` lists them" } else { &near };
-    Err(name.wrong("the name of an effect", remedy))
+    Err(match near.is_empty() {
+        true => name.refuse(LineProblem::UnknownEffect { name: name.shown() }),
+        false => name.wrong("the name of an effect", &near),
+    })
 }
 
 fn add(model: &mut Model, draws: &mut Vec<Draw>, effect: &Effect, table: &Table) -> Result<(), DatasetError> {
@@ -417,8 +419,8 @@ mod tests {
             (
                 "name",
                 "\"scale\"",
-                "2: name must be a name of its own, got \"scale\"; \"scale\" cannot be the name of an effect: \
-                 `umbmark effects` lists an effect of this name",
+                "2: name must be a name of its own, got \"scale\"; \"scale\" cannot be the name of an effect: the \
+                 catalogue has an effect of this name",
             ),
         ] {
             let value_of = |k: &str, v| if k == key { value } else { v };
@@ -436,8 +438,8 @@ mod tests {
                 "name = \"wheelbse\"",
                 "2: name must be the name of an effect, got \"wheelbse\"; did you mean \"wheelbase\"?",
             ),
-            ("name = \"zzz\"", "2: name must be the name of an effect, got \"zzz\"; `umbmark effects` lists them"),
-            ("e_b = 1.0", "1: [[effect]] has no name; add e.g. name = \"wheelbase\" (`umbmark effects` lists them)"),
+            ("name = \"zzz\"", "2: name must be the name of an effect, got \"zzz\""),
+            ("e_b = 1.0", "1: [[effect]] has no name; add e.g. name = \"wheelbase\""),
             ("name = \"wheelbase\"\ne_d = 1.0", "3: unknown key \"e_d\" in [[effect]]; did you mean \"e_b\"?"),
             ("name = \"wheelbase\"\ne_b = 9.0", "3: e_b must be between 0.2 and 5, got 9.0"),
             ("name = \"wheelbase\"\nfree = 1", "3: free must be true or false, got 1"),

@@ -44,7 +44,7 @@ pub fn parse_parameters(file: &str, text: &str, study: &Study) -> Result<Paramet
     let (mut parameters, mut names) = (Vec::new(), Vec::<Entry>::new());
     for entry in list.list("a list of tables, each headed [[parameter]]")? {
         let table = entry.table("[[parameter]]".into())?;
-        let (name, quantity) = quantity(table.need("name", "e.g. name = \"ed\" (a flag of `umbmark mc`)")?, study)?;
+        let (name, quantity) = quantity(table.need("name", "e.g. name = \"ed\"")?, study)?;
         if let Some(first) = parameters.iter().position(|known: &Varied| known.quantity.key() == quantity.key()) {
             return Err(names[first].again(&name));
         }

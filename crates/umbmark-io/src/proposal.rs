@@ -15,6 +15,7 @@ use super::save::{Existing, put_beside_logs, unwritable};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use umbmark_core::action::Action;
 use umbmark_core::drive::{DriveKind, Encoder};
 use umbmark_core::inspect::{LogContents, WheelUnit, WheelsFound};
 use umbmark_core::parameter::Parameter;
@@ -120,7 +121,7 @@ impl Proposal {
         }
         if let Some(other) = wheels.iter().find(|wheels| wheels.drive != drive) {
             let found = format!("there are logs of a {} and of a {} drive", drive.name(), other.drive.name());
-            let remedy = "begin with the logs of one robot";
+            let remedy = "begin with the logs of one robot".into();
             return Err(DatasetError::NoLogs { file: folder.display().to_string(), found, remedy });
         }
         for (key, of) in keys_of(drive, known) {
@@ -137,7 +138,7 @@ impl Proposal {
     fn text(&self, name: &str, drive: DriveKind) -> String {
         let mut text = String::from(
             "# The robot as its own software believes it to be: nominal values, not measured ones.\n\
-             # Lengths in metres. `umbmark init` proposed this file from logs.\n",
+             # Lengths in metres. This file was proposed from logs.\n",
         );
         if !self.to_fill_in().is_empty() {
             text += "# The lines marked FILL IN hold what the logs do not show: write it there.\n";
@@ -160,7 +161,7 @@ impl Proposal {
         if !self.columns.is_empty() {
             text += &self.columns_text();
         }
-        text += "\n# If it was told to drive one path, say which; `umbmark inspect` then checks it.\n\
+        text += "\n# If it was told to drive one path, say which; the logs are then checked against it.\n\
                  # [path]\n# shape = \"square\"\n# side_m = 4.0\n";
         text
     }
@@ -215,11 +216,12 @@ fn usable(place: &Path, logs: Vec<FoundLog>, topics: &Topics, words: &Words) -> 
     match (&kept[..], &notes[..]) {
         ([], []) => {
             let found = format!("there is no log (.{}) in it", log_endings().join(", ."));
-            Err(DatasetError::NoLogs { file, found, remedy: "give a log, or a folder of logs" })
+            Err(DatasetError::NoLogs { file, found, remedy: "give a log, or a folder of logs".into() })
         }
         ([], [first, ..]) => {
             let found = format!("the wheels can be read in none of its logs; {first}");
-            Err(DatasetError::NoLogs { file, found, remedy: "look at one with `umbmark inspect LOG`" })
+            let remedy = Remedy::Then { words: "look at one", action: Action::CheckLog };
+            Err(DatasetError::NoLogs { file, found, remedy })
         }
         _ => {
             let noticed = contents.iter().flat_map(|log| log.notes.iter().map(|note| format!("{}: {note}", log.file)));

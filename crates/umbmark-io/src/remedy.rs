@@ -1,6 +1,7 @@
 //! What to do about an error. The command and Python call their arguments differently, so what names one is data.
 
 use std::borrow::Cow;
+use umbmark_core::action::{Action, Wording};
 
 /// How an edge names its arguments in messages.
 #[derive(Clone, Copy, Debug)]
@@ -11,14 +12,22 @@ pub struct Words {
     pub before: &'static str,
     /// What stands between an argument and its value.
     pub between: &'static str,
+    /// What is done next; nothing is said of it where this is `None`.
+    pub actions: Option<Wording>,
 }
 
 impl Words {
     /// For an error that no edge has worded.
-    pub const PLAIN: Words = Words { replace: "ask", before: "", between: " " };
+    pub const PLAIN: Words = Words { replace: "ask", before: "", between: " ", actions: None };
 
     fn argument(&self, argument: Argument, value: &str) -> String {
         format!("{}{}{value}", self.name(argument), self.between)
+    }
+
+    /// What is done next, behind a message that may end there.
+    pub(crate) fn behind(&self, action: Option<Action>) -> String {
+        let said = action.zip(self.actions).map(|(action, words)| format!("; {}", action.remedy(words)));
+        said.unwrap_or_default()
     }
 
     pub(crate) fn name(&self, argument: Argument) -> String {
@@ -51,6 +60,13 @@ pub enum Argument {
 pub enum Remedy {
     /// Something that needs no argument.
     Words(Cow<'static, str>),
+    /// Something, and what is done next.
+    Then {
+        /// What needs no argument.
+        words: &'static str,
+        /// What is done next.
+        action: Action,
+    },
     /// Choose another place, or let what is there be replaced.
     Replace {
         /// "folder" or "name".
@@ -81,6 +97,7 @@ impl Remedy {
     pub fn worded(&self, words: &Words) -> String {
         match self {
             Remedy::Words(said) => said.clone().into_owned(),
+            Remedy::Then { words: said, action } => format!("{said}{}", words.behind(Some(*action))),
             Remedy::Replace { another } => format!("choose another {another}, or {} to replace it", words.replace),
             Remedy::Name { purpose, argument, value } => format!("{purpose} {}", words.argument(*argument, value)),
             Remedy::NameAnother => {

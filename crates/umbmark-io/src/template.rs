@@ -11,7 +11,7 @@ use umbmark_core::drive::Robot;
 use umbmark_core::path::SHAPES;
 
 const ROBOT_TEXT: &str = r#"# The robot as its own software believes it to be: nominal values, not measured ones.
-# Lengths in metres. `umbmark inspect` checks this file.
+# Lengths in metres.
 
 [robot]
 name = "my robot"

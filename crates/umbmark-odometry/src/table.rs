@@ -119,7 +119,7 @@ impl fmt::Display for TableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             TableError::NotATable => {
-                write!(f, "the numbers are no table of a model; write one with umbmark export --to embedded")
+                write!(f, "the numbers are no table of a model; export the model as one")
             }
             TableError::Version(version) => write!(
                 f,
@@ -392,7 +392,7 @@ mod tests {
     #[test]
     fn numbers_out_of_range_are_told_by_their_place() {
         for (place, value, sentence) in [
-            (0, 7.0, "the numbers are no table of a model; write one with umbmark export --to embedded"),
+            (0, 7.0, "the numbers are no table of a model; export the model as one"),
             (1, 2.0, "version 2 of the layout, and this library reads 1"),
             (2, 29.0, "the table has 29 numbers, got 30"),
             (3, 4.0, "number 3 of the table cannot be 4"),

@@ -11,6 +11,7 @@ use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 use serde::Serialize;
 use serde_json::json;
+use umbmark_core::action::Wording;
 
 use crate::figure::{Axis, Figure, Table};
 use crate::kind::KINDS;
@@ -120,8 +121,13 @@ impl From<Table> for Rows {
     }
 }
 
-/// The page of one study, or of several side by side; `seen` hears how many of [`KINDS`] are built.
-pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usize)) -> Result<String, PageError> {
+/// The page of one study, or of several side by side, with what the program calls its actions; `seen` hears how many of [`KINDS`] are built.
+pub fn page(
+    studies: &[Study],
+    provenance: &Provenance,
+    actions: Wording,
+    mut seen: impl FnMut(usize),
+) -> Result<String, PageError> {
     let mut figures = serde_json::Map::new();
     let mut sections: Vec<Section> = Vec::new();
     let mut absent = Vec::new();
@@ -155,10 +161,11 @@ pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usi
     environment.add_template("table.html", TABLE)?;
     environment.add_template("tile.html", TILE)?;
     let filters: Vec<_> = studies.iter().map(filter).collect();
+    let summaries: Vec<Summary> = studies.iter().map(|study| Summary::of(study, actions)).collect();
     environment.get_template("report.html")?.render(context! {
         title => title(studies),
         robot => robot(studies),
-        summaries => Value::from(Serde(studies.iter().map(Summary::of).collect::<Vec<_>>())),
+        summaries => Value::from(Serde(summaries)),
         changed => Value::from(Serde(summary::changed(studies))),
         partial => studies.iter().any(Study::is_partial),
         many => studies.len() > 1,

@@ -9,6 +9,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use snapbox::{Data, assert_data_eq};
+use umbmark_core::action::Action;
 use umbmark_core::diagnose;
 use umbmark_plot::figure::Figure;
 use umbmark_plot::kind::{KINDS, find};
@@ -103,7 +104,7 @@ fn pictures_and_pages_for_paper_are_the_same_each_time() {
 
 #[test]
 fn a_page_of_one_study_is_one_file_without_a_network() {
-    let text = page(std::slice::from_ref(&*SLOPE), &Provenance::default(), |_| ()).unwrap();
+    let text = page(std::slice::from_ref(&*SLOPE), &Provenance::default(), Action::plain, |_| ()).unwrap();
     assert!(text.len() < 5_000_000);
     for outside in ["<link", "<script src", "@import", "src=\"http"] {
         assert!(!text.contains(outside), "{outside}");
@@ -115,12 +116,16 @@ fn a_page_that_is_stopped_says_so_and_what_is_missing() {
     let stop = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
     let stopped = [study("slope").stopped_by(&stop)];
     let last = |done: usize| stop.store(done >= 1, std::sync::atomic::Ordering::Relaxed);
-    let text = page(&stopped, &Provenance::default(), last).unwrap();
+    let text = page(&stopped, &Provenance::default(), Action::plain, last).unwrap();
     assert!(stopped[0].is_partial());
     for part in ["<strong>PARTIAL.</strong>", "The work was stopped before this part was finished.", "from START"] {
         assert!(text.contains(part), "{part}");
     }
-    assert!(!page(std::slice::from_ref(&*SLOPE), &Provenance::default(), |_| ()).unwrap().contains("PARTIAL"));
+    assert!(
+        !page(std::slice::from_ref(&*SLOPE), &Provenance::default(), Action::plain, |_| ())
+            .unwrap()
+            .contains("PARTIAL")
+    );
 }
 
 #[test]

@@ -22,7 +22,7 @@ use crate::arguments::threads;
 use crate::dataset::Dataset;
 use crate::model::Model;
 use crate::work::{Watch, watched};
-use crate::{json, probability, refused};
+use crate::{actions, json, probability, refused};
 
 /// Models beside measurements; without any, the nominal robot, and the first model fitted to the data.
 #[pyfunction]
@@ -165,7 +165,7 @@ pub fn solve(
     let start = effect::Model::new(data.0.nominal_robot().map_err(refused)?);
     let solution = solved(py, Arc::clone(&data.0), start, options, threads, progress)?;
     let text = told::solution(&solution, &options);
-    Ok((json(&result::Solution::new(&solution, &options))?, text, model_of(solution)))
+    Ok((json(&result::Solution::new(&solution, &options, actions))?, text, model_of(solution)))
 }
 
 /// What changed of a robot between two tests.

@@ -13,9 +13,12 @@ use umbmark_core::effect::{FormulaError, ModelError as CoreModelError};
 use umbmark_core::evidence::FitError as CoreFitError;
 use umbmark_core::joined::JoinError;
 use umbmark_core::learn::GearError;
+use umbmark_core::remedy;
 use umbmark_core::score::ScoreError;
 use umbmark_io::checkpoint::CheckpointError;
 use umbmark_io::{DatasetError, StateError};
+
+use crate::actions;
 
 /// Each exception with its base and its documentation, and those of the core that become it.
 macro_rules! exceptions {
@@ -24,7 +27,7 @@ macro_rules! exceptions {
 
         /// What is refused, in its own words, as the exception that it belongs to.
         pub fn refused(error: impl std::error::Error + 'static) -> PyErr {
-            let (text, any) = (error.to_string(), &error as &dyn Any);
+            let (text, any) = (remedy::worded(&error, actions), &error as &dyn Any);
             $($(if false $(|| any.is::<$error>())+ {
                 return $name::new_err(text);
             })?)*

@@ -8,6 +8,7 @@
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
+use umbmark_core::action::Action;
 use umbmark_io::whole_file::FileError;
 use umbmark_io::{DatasetError, Existing, Words};
 
@@ -71,7 +72,25 @@ module! {
 }
 
 /// How Python names its arguments in messages.
-const WORDS: Words = Words { replace: "say replace=True", before: "", between: "=" };
+const WORDS: Words = Words { replace: "say replace=True", before: "", between: "=", actions: Some(actions) };
+
+/// How Python names what is done next.
+fn actions(action: Action) -> &'static str {
+    match action {
+        Action::ListEffects => "`umbmark.effects()`",
+        Action::Begin => "`umbmark.init(folder)`",
+        Action::CheckData => "`umbmark.inspect(data)`",
+        Action::CheckLog => "`umbmark.inspect(log)`",
+        Action::ReadReturns => "umbmark.inspect, umbmark.score, umbmark.calibrate",
+        Action::Score => "`umbmark.score(data)`",
+        Action::Learn => "`umbmark.learn(data)`",
+        Action::WriteNumbers => "`umbmark.export(solution.model, to=\"ros2_control\")` (or toml, c, urdf)",
+        Action::WriteFitted => "`umbmark.export(umbmark.fit(data).model, to=\"ros2_control\")`",
+        Action::WriteTable => "`umbmark.export(solution.model, to=\"embedded\")`",
+        Action::CorrectLogs => "`umbmark.apply(data, model)`",
+        other => other.plain(),
+    }
+}
 
 /// What is wrong with a file of a data set, or why one is not written, in Python's words.
 fn refused_data(error: DatasetError) -> PyErr {

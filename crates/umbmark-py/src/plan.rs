@@ -113,7 +113,7 @@ pub fn plan(
         let see = see.iter().map(sought).collect::<Result<Vec<_>, PlanError>>()?;
         let request = Request { runs, see: &see, power, numbers: &numbers, sigma_interval, options };
         let findings = watch.work(|watch| request.findings(&setting, watch))?;
-        let sheet = Protocol::new(&setting, runs, order, setting.bumps());
+        let sheet = Protocol::new(&setting, runs, order, setting.bumps(), told::ACTIONS);
         let found = result::Plan::new(&setting, &request, &findings, &known.assumed);
         let text = told::plan(&told::Plan {
             summary: &sheet.summary,

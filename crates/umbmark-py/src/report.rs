@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use pyo3::prelude::*;
+use umbmark_cli::told;
 use umbmark_core::result::Report;
 use umbmark_io::whole_file::WholeFile;
 use umbmark_plot::page::{Origin, Provenance, change, page, said};
@@ -36,7 +37,7 @@ pub fn report(
             // Why nothing could be learnt, the page says.
             let _ = told.work(|watch| study.learn(watch.progress).is_ok());
         }
-        let html = page(&studies, &provenance, |_| ())?;
+        let html = page(&studies, &provenance, told::ACTIONS, |_| ())?;
         let report = Report {
             bytes: html.len(),
             studies: studies.iter().map(said).collect(),

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use pyo3::prelude::*;
+use umbmark_cli::told;
 use umbmark_web::{ServeError, Served, Workbench};
 
 use crate::arguments::threads;
@@ -58,7 +59,8 @@ pub fn serve(
     #[pyo3(from_py_with = threads)] threads: usize,
 ) -> PyResult<Server> {
     let options = options_of(tests, false)?;
-    let served = Served { place, topics: umbmark_io::Topics::default(), drops, options, port, threads };
+    let served =
+        Served { place, topics: umbmark_io::Topics::default(), drops, options, port, threads, actions: told::ACTIONS };
     let workbench = detached(py, || Workbench::open(served))?.map_err(refused)?;
     let (address, stop) = (workbench.address(), Arc::new(AtomicBool::new(false)));
     let told = Arc::clone(&stop);

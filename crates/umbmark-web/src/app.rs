@@ -11,6 +11,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+use umbmark_core::action::Wording;
 use umbmark_core::calibrate::Correction;
 use umbmark_core::dataset::Dataset;
 use umbmark_core::drive::{DriveKind, Robot};
@@ -357,9 +358,9 @@ impl App {
                 pool.install(|| bench.learn(watch))
             }),
             "report" => {
-                let (report, options) = (Arc::clone(&self.report), self.served.options);
+                let (report, options, actions) = (Arc::clone(&self.report), self.served.options, self.served.actions);
                 self.jobs.begin("report", move |watch| {
-                    let text = pool.install(|| report_of(&bench, options, watch.progress))?;
+                    let text = pool.install(|| report_of(&bench, (options, actions), watch.progress))?;
                     *report.lock().unwrap_or_else(PoisonError::into_inner) = Some(text.into_bytes());
                     Ok(())
                 })
@@ -434,7 +435,7 @@ impl App {
 /// The page of `report` for the model that is looked at.
 fn report_of(
     bench: &Bench,
-    options: umbmark_core::diagnose::Options,
+    (options, actions): (umbmark_core::diagnose::Options, Wording),
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<String, Trouble> {
     let model = bench.model()?;
@@ -444,7 +445,7 @@ fn report_of(
     let files = Origin::of_dataset(&bench.place).map_err(Trouble::because)?;
     let provenance = Provenance { version: umbmark_core::VERSION.to_owned(), seed: options.seed, command, files };
     let all = kind::KINDS.len() as f64;
-    page(&[study], &provenance, |done| progress(done as f64 / all)).map_err(Trouble::because)
+    page(&[study], &provenance, actions, |done| progress(done as f64 / all)).map_err(Trouble::because)
 }
 
 /// A JSON body.

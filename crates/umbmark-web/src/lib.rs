@@ -22,6 +22,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use umbmark_core::action::Wording;
 use umbmark_core::diagnose;
 use umbmark_io::Topics;
 
@@ -43,6 +44,8 @@ pub struct Served {
     pub port: u16,
     /// The threads to compute on; 0 for all processors.
     pub threads: usize,
+    /// What the program that serves it calls its actions.
+    pub actions: Wording,
 }
 
 /// Why nothing is served.

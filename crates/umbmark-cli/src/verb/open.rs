@@ -9,6 +9,7 @@ use umbmark_web::{Served, Workbench};
 use crate::Session;
 use crate::data_arguments::TopicArguments;
 use crate::test_arguments::TestArguments;
+use crate::words::ACTIONS;
 
 /// Where files go that are dropped on the page.
 const DROPS: &str = "umbmark_open";
@@ -49,6 +50,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         options: arguments.test.options(session),
         port: arguments.port,
         threads: session.threads(),
+        actions: ACTIONS,
     };
     let workbench = Workbench::open(served)?;
     let address = workbench.address();

@@ -16,6 +16,7 @@ use crate::files::Pending;
 use crate::numbers::number;
 use crate::plan_report::{Known, Report, Separation};
 use crate::setup::{Directions, Setup, SetupFlags};
+use crate::words::ACTIONS;
 use crate::{Session, plan_report};
 
 /// Numbers of runs a direction that results tell of.
@@ -175,7 +176,7 @@ impl Arguments {
 
     /// The sheet of the planned test.
     fn sheet(&self, setting: &Setting) -> Protocol {
-        Protocol::new(setting, usize::from(self.runs), self.order.into(), setting.bumps())
+        Protocol::new(setting, usize::from(self.runs), self.order.into(), setting.bumps(), ACTIONS)
     }
 
     /// Writes the sheets that were asked for.

@@ -16,6 +16,7 @@ use crate::data_arguments::TopicArguments;
 use crate::files::Pending;
 use crate::prose::hanging;
 use crate::study_arguments::StudyArguments;
+use crate::words::ACTIONS;
 
 /// Measured poses that take minutes to learn from: some 0.1 ms each on one thread.
 const MANY: usize = 200_000;
@@ -76,7 +77,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         let _ = session.told("% of the steps of learning at most", |tell| study.learn(tell).is_ok())?;
     }
     let mut progress = session.progress(KINDS.len() as u64, "figures");
-    let made = session.on_threads(|| page(&studies, &provenance, |done| progress.at(done as u64)))?;
+    let made = session.on_threads(|| page(&studies, &provenance, ACTIONS, |done| progress.at(done as u64)))?;
     drop(progress);
     let text = made.context("cannot make the page")?;
     file.write_all(text.as_bytes()).with_context(|| file.failed())?;

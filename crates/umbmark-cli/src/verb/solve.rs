@@ -14,6 +14,7 @@ use crate::data_arguments::DataArguments;
 use crate::model_report::{estimates_table, meaning_text, write_learnt};
 use crate::setup_report::{disturbances_text, faults_text, reasons_text, remains_text, taken_text};
 use crate::test_arguments::TestArguments;
+use crate::words::ACTIONS;
 
 /// Arguments of `solve`.
 #[derive(Debug, clap::Args)]
@@ -50,7 +51,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         write_learnt(&solution, file, arguments.force)?;
     }
     if session.json() {
-        session.print_json(&result::Solution::new(&solution, &options))?;
+        session.print_json(&result::Solution::new(&solution, &options, ACTIONS))?;
     } else {
         for warning in &data.warnings {
             session.message("warning", warning);

@@ -32,7 +32,7 @@ pub enum CompileError {
     /// A formula.
     #[error(
         "{effect} is a formula, and only effects of the catalogue that act on motion can be compiled ({}); take it out and learn or fit the \
-         others anew, or correct the poses of a log by `umbmark apply`",
+         others anew, or correct its logs on a computer",
         compilable()
     )]
     Formula {

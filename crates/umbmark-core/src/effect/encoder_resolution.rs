@@ -39,7 +39,7 @@ impl Effect for EncoderResolution {
             },
         ],
         equation: "(forward, Δθ) ← (forward, Δθ) + ((e_L + e_R)/2, (e_R - e_L)/b),  e_w uniform in ±q/2",
-        physics: "An encoder gives the wheel's angle only to within half a count. `mc` and `simulate` already count the robot's own \
+        physics: "An encoder gives the wheel's angle only to within half a count. Simulations already count the robot's own \
                   ticks: this effect adds a coarser reading, or represents the counts in a model.",
         signature: "The scatter does not grow with the length of the path: q/(b√6) in heading and q/√24 along the path.",
         confused_with: &["wheel_noise", "reference_noise"],

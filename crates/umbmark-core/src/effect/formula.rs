@@ -171,7 +171,7 @@ impl Formula {
     /// Compiles a formula whose parameters have these names.
     pub fn new(name: &str, target: Target, text: &str, parameters: &[&str]) -> Result<Formula, FormulaError> {
         if CATALOGUE.iter().any(|entry| entry.about.name == name) {
-            let why = "`umbmark effects` lists an effect of this name";
+            let why = "the catalogue has an effect of this name";
             return Err(FormulaError::Naming { name: name.to_owned(), what: "an effect", why });
         }
         check_name(name, "an effect")?;

@@ -11,7 +11,7 @@ use std::sync::Arc;
 #[non_exhaustive]
 pub enum ModelError {
     /// An effect that the catalogue does not hold.
-    #[error("there is no effect \"{name}\"{}", did_you_mean(*nearest).unwrap_or_else(listed))]
+    #[error("there is no effect \"{name}\"{}", did_you_mean(*nearest))]
     UnknownEffect {
         /// The name that was given.
         name: String,
@@ -19,7 +19,7 @@ pub enum ModelError {
         nearest: Option<&'static str>,
     },
     /// A parameter that the effect does not have.
-    #[error("{effect} has no parameter \"{name}\"{}", did_you_mean(*nearest).unwrap_or_default())]
+    #[error("{effect} has no parameter \"{name}\"{}", did_you_mean(*nearest))]
     UnknownParameter {
         /// The effect.
         effect: &'static str,
@@ -91,12 +91,8 @@ pub enum ModelError {
     },
 }
 
-fn did_you_mean(nearest: Option<&str>) -> Option<String> {
-    nearest.map(|n| format!("; did you mean \"{n}\"?"))
-}
-
-fn listed() -> String {
-    "; `umbmark effects` lists them".to_owned()
+fn did_you_mean(nearest: Option<&str>) -> String {
+    nearest.map(|n| format!("; did you mean \"{n}\"?")).unwrap_or_default()
 }
 
 /// One effect of a model.

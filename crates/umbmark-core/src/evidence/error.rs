@@ -10,7 +10,7 @@ use crate::setup::Fault;
 #[non_exhaustive]
 pub enum FitError {
     /// No nominal robot.
-    #[error("the nominal robot is not known: put a robot.toml beside the data (`umbmark init` writes one)")]
+    #[error("the nominal robot is not known: no robot.toml beside the data")]
     NoRobot,
     /// A path that no robot of the drive can drive.
     #[error(

@@ -40,7 +40,7 @@ enum Owner {
 #[non_exhaustive]
 pub enum QuantityError {
     /// No quantity of this name.
-    #[error("there is no parameter \"{name}\"{}", nearest.as_ref().map_or("; `umbmark effects` lists them with their flags".into(), |n| format!("; did you mean \"{n}\"?")))]
+    #[error("there is no parameter \"{name}\"{}", nearest.as_ref().map_or(String::new(), |n| format!("; did you mean \"{n}\"?")))]
     Unknown {
         /// The name that was given.
         name: String,

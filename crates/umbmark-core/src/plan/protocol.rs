@@ -4,6 +4,7 @@
 //! keeps a drift of the session out of the estimates.
 
 use super::{Order, Setting};
+use crate::action::{Action, Wording};
 use crate::dataset::RETURNS_COLUMNS;
 use crate::effect::TestKind;
 use crate::geometry::{Displacement2, Pose2};
@@ -36,17 +37,17 @@ pub struct Protocol {
 }
 
 impl Protocol {
-    /// The sheet of n + n runs, and of as many again over bumps where there are any.
+    /// The sheet of n + n runs, and of as many again over bumps where there are any; what to do with it then is said in the words of an edge.
     ///
     /// ```
-    /// use umbmark_core::{drive::Robot, effect::Model, path::Path, plan::{Order, Protocol, Setting}};
+    /// use umbmark_core::{action::Action, drive::Robot, effect::Model, path::Path, plan::{Order, Protocol, Setting}};
     /// let mut truth = Model::new(&Robot::labmate());
     /// truth.set("wheel_noise", "k_sqrt_m", 1e-3)?;
-    /// let sheet = Protocol::new(&Setting::new(&Path::umbmark(), &truth, 1)?, 5, Order::Mirrored, 0.0);
+    /// let sheet = Protocol::new(&Setting::new(&Path::umbmark(), &truth, 1)?, 5, Order::Mirrored, 0.0, Action::plain);
     /// assert_eq!((sheet.runs.len(), sheet.columns[0], sheet.columns.len()), (10, "direction", 8));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn new(setting: &Setting, n: usize, order: Order, bumps: f64) -> Protocol {
+    pub fn new(setting: &Setting, n: usize, order: Order, bumps: f64, words: Wording) -> Protocol {
         let tests: &[TestKind] =
             if bumps > 0.0 { &[TestKind::Systematic, TestKind::Bumps] } else { &[TestKind::Systematic] };
         let runs: Vec<ProtocolRun> = tests.iter().flat_map(|test| runs_of(*test, order, n)).collect();
@@ -64,7 +65,7 @@ impl Protocol {
             if bumps > 0.0 { ", and as many over bumps" } else { "" },
         );
         let robot = setting.robot().name.clone();
-        Protocol { robot, summary, steps: steps(setting, order, bumps), runs, columns }
+        Protocol { robot, summary, steps: steps(setting, order, bumps, words), runs, columns }
     }
 }
 
@@ -106,7 +107,7 @@ fn floor(path: &Path) -> [f64; 3] {
     reach
 }
 
-fn steps(setting: &Setting, order: Order, bumps: f64) -> Vec<String> {
+fn steps(setting: &Setting, order: Order, bumps: f64, words: Wording) -> Vec<String> {
     let [behind, ahead, beside] = floor(&setting.path);
     let moves = setting.path.moves(Direction::Ccw);
     let on_the_spot = moves.iter().filter(|m| matches!(m, Move::Turn { .. })).count();
@@ -162,6 +163,10 @@ fn steps(setting: &Setting, order: Order, bumps: f64) -> Vec<String> {
              rolls over it. The heading is what counts: measure it well."
         ));
     }
-    steps.push("Type the table into returns.csv (`umbmark init` writes an empty one), then: umbmark inspect, score, calibrate.".to_owned());
+    steps.push(format!(
+        "Type the table into returns.csv ({} writes an empty one), then: {}.",
+        words(Action::Begin),
+        words(Action::ReadReturns)
+    ));
     steps
 }

@@ -1,6 +1,7 @@
 //! Planned tests held against brute force: tests simulated by the engine and judged as measured ones are.
 
 use super::*;
+use crate::action::Action;
 use crate::calibrate::{self, Method, Ratio, calibrate};
 use crate::diagnose::ends::{Asked, Family};
 use crate::diagnose::tests::{dataset, margin, trials};
@@ -188,7 +189,7 @@ fn a_drift_is_read_as_the_other_parameter_in_blocks_and_cancels_in_mirrored_orde
 #[test]
 fn a_sheet_lists_every_run_once_in_its_order_with_the_columns_of_returns() {
     let setting = setting(&Path::umbmark()).with_heading(false);
-    let sheet = Protocol::new(&setting, 4, Order::Mirrored, 10.0);
+    let sheet = Protocol::new(&setting, 4, Order::Mirrored, 10.0, Action::plain);
     assert_eq!(sheet.columns, ["test", "direction", "run", "x_abs_m", "y_abs_m", "x_calc_m", "y_calc_m"]);
     let first: Vec<_> = sheet.runs[..4].iter().map(|run| (run.direction, run.number)).collect();
     let [cw, ccw] = Direction::BOTH;

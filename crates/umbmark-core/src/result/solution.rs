@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::diagnosis::Confounder;
 use super::fitted::{Estimate, estimates, meaning};
 use super::{Keyed, Leaves, Model, Setup, finite, reasons};
+use crate::action::Wording;
 use crate::diagnose::Options;
 use crate::solve;
 
@@ -124,8 +125,8 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// An answer that was found with `options`.
-    pub fn new(solution: &solve::Solution, options: &Options) -> Solution {
+    /// An answer that was found with `options`, with what an edge calls its actions.
+    pub fn new(solution: &solve::Solution, options: &Options, words: Wording) -> Solution {
         let learnt = &solution.learnt;
         let diagnosis = &learnt.diagnosis;
         Solution {
@@ -136,7 +137,7 @@ impl Solution {
             trusted: solution.is_trusted(),
             remains_m: solution.off.as_ref().and_then(|off| finite(off.with_numbers)),
             off: solution.off.as_ref().map(Off::from),
-            next: solution.next(),
+            next: solution.next(words),
             not_shown: solution.not_shown.clone(),
             confounders: diagnosis.confounders.iter().map(Confounder::from).collect(),
             reasons: reasons(&diagnosis.reasons),

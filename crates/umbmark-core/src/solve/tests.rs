@@ -2,6 +2,7 @@
 
 use super::off::Measure;
 use super::*;
+use crate::action::Action;
 use crate::calibrate::Method;
 use crate::diagnose::tests::{robot_with, simulated};
 use crate::likelihood::watched::{watched, watched_on};
@@ -98,21 +99,25 @@ fn a_robot_without_errors_gets_nothing_to_write() {
     let answer = answer(&data[0]);
     assert!(!answer.needed, "{:?}", answer.changes);
     assert!(answer.sentence().ends_with("nothing is to be written."), "{}", answer.sentence());
-    assert!(answer.next().iter().all(|step| !step.contains("Write")), "{:?}", answer.next());
+    assert!(answer.next(Action::plain).iter().all(|step| !step.contains("Write")), "{:?}", answer.next(Action::plain));
 }
 
 #[test]
 fn numbers_that_make_it_worse_are_not_to_be_written() {
     let truth = [("wheel_diameter_ratio", "e_d", 1.002), ("wheelbase", "e_b", 0.97), ("scale", "e_s", 0.99)];
     let mut answer = answer(&watched(&robot(&truth), 3, 5));
-    assert!(answer.is_trusted() && answer.next()[0].starts_with("Write the new numbers"), "{:?}", answer.next());
+    assert!(
+        answer.is_trusted() && answer.next(Action::plain)[0].starts_with("Write the new numbers"),
+        "{:?}",
+        answer.next(Action::plain)
+    );
     // As if the runs had missed by less as they were driven.
     let off = answer.off.as_mut().unwrap();
     off.driven = 0.8 * off.with_numbers;
     assert!(answer.makes_worse() && !answer.is_trusted());
     assert!(answer.sentence().ends_with("as driven: do not write them."), "{}", answer.sentence());
     assert!(answer.doubt().is_some_and(|why| why.contains("do not write them")));
-    assert!(answer.next().iter().all(|step| !step.contains("Write")), "{:?}", answer.next());
+    assert!(answer.next(Action::plain).iter().all(|step| !step.contains("Write")), "{:?}", answer.next(Action::plain));
 }
 
 #[test]
@@ -125,7 +130,7 @@ fn lengths_that_a_tape_tells_better_are_not_to_be_written() {
         for change in answer.changes.iter_mut().filter(|change| change.key.starts_with("wheel_diameter")) {
             change.interval = Some(crate::stats::Interval::around(change.new, share * change.new));
         }
-        (answer.is_trusted(), answer.sentence(), answer.doubt(), answer.next())
+        (answer.is_trusted(), answer.sentence(), answer.doubt(), answer.next(Action::plain))
     };
     let (trusted, sentence, doubt, next) = widen(0.56);
     let told = "These runs leave the wheel diameters open, by up to 56 % either way";
@@ -147,7 +152,7 @@ fn numbers_that_a_law_of_unknown_cause_outweighs_are_not_to_be_written() {
     let [laws, numbers] = answer.outweighed().unwrap();
     assert!(laws > numbers && !answer.is_trusted());
     assert!(answer.sentence().ends_with("do not write them before it is found."), "{}", answer.sentence());
-    assert!(answer.next()[0].starts_with("Find the cause of the law"), "{:?}", answer.next());
+    assert!(answer.next(Action::plain)[0].starts_with("Find the cause of the law"), "{:?}", answer.next(Action::plain));
     // As if the numbers had been worth more.
     answer.off.as_mut().unwrap().driven += 2.0 * laws;
     assert!(answer.outweighed().is_none() && answer.is_trusted());
@@ -161,7 +166,11 @@ fn straight_runs_give_the_wheels_and_no_wheelbase() {
     let keys: Vec<&str> = answer.changes.iter().map(|change| change.key).collect();
     assert_eq!(keys, ["wheel_diameter_left_m", "wheel_diameter_right_m"]);
     assert_eq!(answer.not_shown, ["wheelbase"]);
-    assert!(answer.next().iter().any(|step| step.contains("do not show the wheelbase")), "{:?}", answer.next());
+    assert!(
+        answer.next(Action::plain).iter().any(|step| step.contains("do not show the wheelbase")),
+        "{:?}",
+        answer.next(Action::plain)
+    );
 }
 
 #[test]
@@ -173,7 +182,11 @@ fn exchanged_wheels_come_first_and_no_number_is_given() {
     let answer = answer(&data);
     assert!(answer.changes.is_empty() && !answer.is_trusted());
     assert!(answer.sentence().contains("write wheels_exchanged = true"), "{}", answer.sentence());
-    assert!(answer.next()[0].starts_with("Write wheels_exchanged = true"), "{:?}", answer.next());
+    assert!(
+        answer.next(Action::plain)[0].starts_with("Write wheels_exchanged = true"),
+        "{:?}",
+        answer.next(Action::plain)
+    );
 }
 
 /// Another effect with which the scale is 1 % larger: if it is as likely as the one that was added, intervals hold both values; with a

@@ -1,6 +1,7 @@
 //! The answer in words.
 
 use super::{Change, Measure, Off, Part, Solution};
+use crate::action::{Action, Wording};
 use crate::diagnose::{Experiment, Reason, Verdict};
 use crate::effect::find;
 use crate::prose::counted;
@@ -257,62 +258,55 @@ pub(super) fn beyond_wheels(solution: &Solution) -> Option<String> {
     ))
 }
 
-pub(super) fn next(solution: &Solution) -> Vec<String> {
+pub(super) fn next(solution: &Solution, words: Wording) -> Vec<String> {
     let faults = solution.faults();
     if !faults.is_empty() {
         let told = faults.iter().map(|fault| capital(&format!("{}, then solve again.", fault.remedy())));
         return told.collect();
     }
     let mut next = Vec::new();
+    let learn = words(Action::Learn);
     let diagnosis = &solution.learnt.diagnosis;
     let enough = solution.learnt.verdict != Verdict::NotEnoughData;
     if solution.learnt.is_in_doubt() {
         next.extend(diagnosis.reasons.iter().map(|reason| capital(&format!("{}.", reason.sentence()))));
-        next.push("Correct what is named above, or measure again; `umbmark inspect DATA` checks the data.".into());
+        let check = words(Action::CheckData);
+        next.push(format!("Correct what is named above, or measure again; {check} checks the data."));
     } else if solution.vague().next().is_some() {
         next.push("Drive more runs, with straights and turns both ways, and at several speeds.".into());
     } else if solution.misleads_alone() {
-        next.push(
-            "Let the robot compute its odometry by the whole model: `umbmark solve DATA -o model.toml`, then `umbmark export \
-             model.toml --to embedded -o model.h`."
-                .into(),
-        );
-        next.push(
-            "Or write numbers that fit drives like these without the other effects: `umbmark fit DATA -o plain.toml`, then \
-             `umbmark export plain.toml --to ros2_control -o robot.yaml`. They are not the robot's true lengths."
-                .into(),
-        );
+        next.push(format!("Let the robot compute its odometry by the whole model: {}.", words(Action::WriteTable)));
+        next.push(format!(
+            "Or write numbers that fit drives like these without the other effects: {}. They are not the robot's true lengths.",
+            words(Action::WriteFitted)
+        ));
     } else if solution.makes_worse() {
         next.push("Drive more runs, with straights and turns both ways: these do not show numbers that help.".into());
     } else if solution.outweighed().is_some() {
-        next.push(
-            "Find the cause of the law: `umbmark learn DATA` says how sure it is, which others do as well, and which drive tells \
-             them apart."
-                .into(),
-        );
+        next.push(format!(
+            "Find the cause of the law: {learn} says how sure it is, which others do as well, and which drive tells them apart."
+        ));
     } else if solution.needed && !solution.changes.is_empty() {
-        next.push(
-            "Write the new numbers: `umbmark solve DATA -o model.toml`, then `umbmark export model.toml --to ros2_control -o \
-             robot.yaml` (or toml, c, urdf)."
-                .into(),
-        );
-        next.push("Then drive the same test again: `umbmark score` shows whether it is better.".into());
+        next.push(format!("Write the new numbers: {}.", words(Action::WriteNumbers)));
+        next.push(format!("Then drive the same test again: {} shows whether it is better.", words(Action::Score)));
     }
     let found = || solution.learnt.diagnosis.setup.runs.iter().flat_map(|run| &run.jumps);
     let unrecorded = found().filter(|jump| jump.unrecorded.is_some()).count();
     let jumps = found().count() - unrecorded + only_fitted(solution);
     if !solution.learnt.is_in_doubt() && jumps > 0 {
         next.push(format!(
-            "Find the cause of {}: counts that were lost, a wheel that slipped, a push, or a reference that lost the robot. `umbmark learn \
-             DATA` says where.",
-            counted(jumps, "jump")
+            "Find the cause of {}: counts that were lost, a wheel that slipped, a push, or a reference that lost the robot. {} says \
+             where.",
+            counted(jumps, "jump"),
+            capital(learn)
         ));
     }
     if !solution.learnt.is_in_doubt() && unrecorded > 0 {
         next.push(format!(
-            "Log without a gap: in {} no rows were written while the wheels rolled, and no odometry knows that way. `umbmark learn DATA` \
-             says where.",
-            counted(unrecorded, "place")
+            "Log without a gap: in {} no rows were written while the wheels rolled, and no odometry knows that way. {} says \
+             where.",
+            counted(unrecorded, "place"),
+            capital(learn)
         ));
     }
     if !enough {
@@ -330,7 +324,7 @@ pub(super) fn next(solution: &Solution) -> Vec<String> {
         next.push("Drive turns: these runs do not show the wheelbase.".into());
     }
     if !solution.learnt.is_in_doubt() && solution.off.as_ref().is_some_and(|off| !off.known.is_empty()) {
-        next.push("Correct logs by all that is known: `umbmark apply LOG --model model.toml -o corrected.csv`.".into());
+        next.push(format!("Correct logs by all that is known: {}.", words(Action::CorrectLogs)));
     }
     next.extend(unsure(solution).map(|e| {
         let [own, other] = e.separates;

@@ -16,12 +16,14 @@ use crate::file_names::{RETURNS, ROBOT, RUNS};
 use crate::foreign::Foreign;
 use crate::label;
 use crate::probe::{Probe, extension, name_of, names_in, stem};
+use crate::remedy::Remedy;
 use crate::save::{Existing, put};
 use crate::source::Source;
 pub(crate) use returns::{Measured, ReturnRow, parse_returns, returns_text};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 pub(crate) use tick_log::{parse_tick_log, tick_log_text};
+use umbmark_core::action::Action;
 use umbmark_core::dataset::{Dataset, Run, TickLog};
 use umbmark_core::run::dead_reckoning::EndPose;
 
@@ -33,8 +35,10 @@ pub(crate) const LAYOUT: Layout = Layout::new("csv", "robot.toml, returns.csv an
 
 const MARKS: &str = "marks.csv";
 pub(crate) const REFERENCE: &str = "reference";
-const EXPECTED: &str =
-    "a dataset has robot.toml with returns.csv, runs/*.csv or runs/*.mcap (`umbmark init FOLDER` writes a start)";
+const EXPECTED: Remedy = Remedy::Then {
+    words: "a dataset has robot.toml with returns.csv, runs/*.csv or runs/*.mcap",
+    action: Action::Begin,
+};
 
 fn is_data(probe: &Probe) -> bool {
     probe.is_folder && probe.has(ROBOT)
@@ -156,7 +160,11 @@ fn read_file(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
     let (file, folder) = (&probe.path, &probe.folder);
     if probe.extension() == "toml" {
         let (file, found) = (file.display().to_string(), "it describes one".into());
-        return Err(DatasetError::NotADataset { file, found, remedy: "give the folder it is in, or returns.csv" });
+        return Err(DatasetError::NotADataset {
+            file,
+            found,
+            remedy: "give the folder it is in, or returns.csv".into(),
+        });
     }
     let mut assembly = Assembly::new(probe.robot_file()?);
     let mut header: Vec<String> =

@@ -92,7 +92,7 @@ fn up_axis(found: &[(Vector3<f64>, Matrix3<f64>)]) -> usize {
 }
 
 fn refused(file: &str, found: &str) -> DatasetError {
-    DatasetError::NotADataset { file: file.to_owned(), found: found.to_owned(), remedy: REMEDY }
+    DatasetError::NotADataset { file: file.to_owned(), found: found.to_owned(), remedy: REMEDY.into() }
 }
 
 impl Body {

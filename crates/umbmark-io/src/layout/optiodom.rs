@@ -70,7 +70,7 @@ fn read(probe: &Probe, _: &Topics) -> Result<Dataset, DatasetError> {
             return Err(DatasetError::NotADataset {
                 file: folder.display().to_string(),
                 found: format!("it has {} OptiOdom sets ({})", sets.len(), sets.join(", ")),
-                remedy: "give the metadata file of one of them",
+                remedy: "give the metadata file of one of them".into(),
             });
         };
         return read_set(folder, set, names);

@@ -1,7 +1,20 @@
 //! What is said of each case in a file of cases.
 
+use umbmark_core::action::Action;
+use umbmark_io::Words;
+
 /// How the command words what is said.
-pub const COMMAND: umbmark_io::Words = umbmark_io::Words { replace: "say --force", before: "--", between: " " };
+pub const COMMAND: Words = Words { replace: "say --force", before: "--", between: " ", actions: Some(actions) };
+
+/// What the command calls the actions that these messages end in.
+fn actions(action: Action) -> &'static str {
+    match action {
+        Action::ListEffects => "`umbmark effects`",
+        Action::Begin => "`umbmark init`",
+        Action::CheckLog => "`umbmark inspect LOG`",
+        other => other.plain(),
+    }
+}
 
 /// The name of each case and its sentence, in the order of the file.
 pub fn sentences(cases: &'static str) -> Vec<(&'static str, &'static str)> {

@@ -1,6 +1,7 @@
 //! The first screen: how far off, why, what to write, and how the error fell.
 
 use serde::Serialize;
+use umbmark_core::action::Wording;
 use umbmark_core::effect::find;
 use umbmark_core::learn::{Learnt, Step};
 use umbmark_core::result::meaning;
@@ -68,7 +69,7 @@ struct Fallen {
 }
 
 impl Summary {
-    pub(super) fn of(study: &Study) -> Summary {
+    pub(super) fn of(study: &Study, actions: Wording) -> Summary {
         let solution = study.solution();
         let said = said(study);
         let told = |tile: fn(&Solution) -> Tile, absent: fn(&Study, &Absent) -> Tile| match solution.as_ref() {
@@ -96,7 +97,7 @@ impl Summary {
             write: told(to_write, |_, why| Tile { answer: "–".into(), says: why.to_string(), rows: Vec::new() }),
             fall: study.learnt().map(fall).unwrap_or_default(),
             meaning: means.chain(steps.filter_map(of_law)).collect(),
-            next: solution.map(Solution::next).unwrap_or_default(),
+            next: solution.map(|solution| solution.next(actions)).unwrap_or_default(),
         }
     }
 }

@@ -401,7 +401,7 @@ fn names_are_letters_and_nobody_elses() {
     assert_eq!(new("own", &["a", "b", "c", "d", "e", "f"]), Ok(()));
     for (name, parameters, said) in [
         ("own", &["a", "b", "c", "d", "e", "f", "g"][..], "an effect has 6 parameters at most, got 7"),
-        ("scale", &[], "\"scale\" cannot be the name of an effect: `umbmark effects` lists an effect of this name"),
+        ("scale", &[], "\"scale\" cannot be the name of an effect: the catalogue has an effect of this name"),
         (
             "a b",
             &[],
