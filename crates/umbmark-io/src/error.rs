@@ -171,6 +171,14 @@ pub enum LineProblem {
         /// What it looks like.
         found: &'static str,
     },
+    /// A cell whose bytes are not UTF-8.
+    #[error("column {column}: {value} has bytes that are not UTF-8; save the file as UTF-8 text")]
+    CellNotUtf8 {
+        /// Name of the column, quoted, or its number from 1.
+        column: String,
+        /// What it holds, quoted, with a mark for each such byte.
+        value: String,
+    },
     /// The first line is not a header.
     #[error("the first row is data ({value}); put a header line with the column names above it, not behind a #")]
     NoHeader {

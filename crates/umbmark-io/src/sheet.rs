@@ -5,19 +5,22 @@
 
 use super::error::{At, DatasetError, LineProblem, quoted};
 use super::source::{BLOCK, Source};
-use csv::{ErrorKind, ReaderBuilder, StringRecord, Terminator};
+use csv::{ByteRecord, ErrorKind, ReaderBuilder, Terminator};
+use std::str::from_utf8;
 
 /// The rows of a text that hold something.
 pub(super) struct Rows<'a> {
     reader: csv::Reader<Source<'a>>,
-    cells: StringRecord,
+    cells: ByteRecord,
 }
 
 /// A row of cells.
 pub(super) struct Row<'r> {
     pub file: &'r str,
     pub line: usize,
-    cells: &'r StringRecord,
+    /// All cells, one behind the other.
+    text: &'r str,
+    cells: &'r ByteRecord,
 }
 
 /// Rows below a header.
@@ -38,7 +41,7 @@ impl<'a> Rows<'a> {
         let mut builder = ReaderBuilder::new();
         builder.delimiter(delimiter).comment(Some(b'#')).terminator(Terminator::Any(b'\n'));
         let reader = builder.has_headers(false).flexible(true).buffer_capacity(BLOCK).from_reader(source);
-        Rows { reader, cells: StringRecord::new() }
+        Rows { reader, cells: ByteRecord::new() }
     }
 
     pub fn file(&self) -> &str {
@@ -47,9 +50,14 @@ impl<'a> Rows<'a> {
 
     /// The next row; nothing at the end.
     pub fn next(&mut self) -> Result<Option<Row<'_>>, DatasetError> {
+        self.next_below(&[])
+    }
+
+    /// The next row below a header, whose names messages use; nothing at the end.
+    fn next_below(&mut self, header: &[String]) -> Result<Option<Row<'_>>, DatasetError> {
         loop {
             let before = self.reader.position().line();
-            match self.reader.read_record(&mut self.cells) {
+            match self.reader.read_byte_record(&mut self.cells) {
                 Ok(true) => {}
                 Ok(false) => return Ok(None),
                 Err(error) => return Err(self.failed(error)),
@@ -60,17 +68,24 @@ impl<'a> Rows<'a> {
             // The reader stands on the line after the row; comments and blank lines may have come before it.
             let mut line = self.reader.position().line() - 1;
             if line > before {
-                line -= self.cells.as_slice().bytes().filter(|byte| *byte == b'\n').count() as u64;
+                line -= self.cells.as_slice().iter().filter(|byte| **byte == b'\n').count() as u64;
             }
-            return Ok(Some(Row { file: &self.reader.get_ref().file, line: line as usize, cells: &self.cells }));
+            let (file, line) = (&self.reader.get_ref().file[..], line as usize);
+            return match text_of(&self.cells) {
+                Some(text) => Ok(Some(Row { file, line, text, cells: &self.cells })),
+                None => Err(At::new(file, line).refuse(not_utf8(&self.cells, header))),
+            };
         }
     }
 
     fn holds_something(&self) -> bool {
-        let text = self.cells.as_slice();
-        match text.as_bytes().first() {
+        let bytes = self.cells.as_slice();
+        match bytes.first() {
             Some(first) if first.is_ascii_graphic() && *first != b'#' => true,
-            _ => !text.trim().is_empty() && !self.cells[0].trim_start().starts_with('#'),
+            _ => {
+                let first = String::from_utf8_lossy(&self.cells[0]);
+                !String::from_utf8_lossy(bytes).trim().is_empty() && !first.trim_start().starts_with('#')
+            }
         }
     }
 
@@ -78,7 +93,8 @@ impl<'a> Rows<'a> {
         let source = self.reader.get_ref();
         match error.into_kind() {
             ErrorKind::Io(error) => source.failed(&error),
-            _ => source.not_utf8(self.reader.position().line() as usize - 1),
+            // Of bytes and rows of any length, nothing else can fail.
+            other => source.failed(&std::io::Error::other(format!("{other:?}"))),
         }
     }
 }
@@ -87,11 +103,12 @@ impl<'r> Row<'r> {
     /// A cell; nothing where the row has ended before.
     #[inline]
     pub fn cell(&self, place: usize) -> &'r str {
-        self.cells.get(place).map_or("", tidy)
+        self.cells.range(place).map_or("", |range| tidy(&self.text[range]))
     }
 
     pub fn cells(&self) -> impl Iterator<Item = &'r str> + use<'r> {
-        self.cells.iter().map(tidy)
+        let (cells, text) = (self.cells, self.text);
+        (0..cells.len()).filter_map(|place| cells.range(place)).map(|range| tidy(&text[range]))
     }
 
     /// Refuses a row with more or fewer cells than there are columns; empty ones after the last do no harm.
@@ -113,7 +130,7 @@ impl<'r> Row<'r> {
     }
 
     fn check_separator(&self) -> Result<(), DatasetError> {
-        let has = |separator: char| self.cells.as_slice().contains(separator);
+        let has = |separator: char| self.text.contains(separator);
         let found = match self.cells.len() {
             _ if has(';') => "semicolons",
             2.. => return Ok(()),
@@ -158,7 +175,7 @@ impl<'a> Sheet<'a> {
     /// Visits every row; there must be one.
     pub fn for_each(mut self, mut visit: impl FnMut(&Row) -> Result<(), DatasetError>) -> Result<(), DatasetError> {
         let mut any = false;
-        while let Some(row) = self.rows.next()? {
+        while let Some(row) = self.rows.next_below(&self.header)? {
             row.check_width(self.header.len())?;
             visit(&row)?;
             any = true;
@@ -169,6 +186,24 @@ impl<'a> Sheet<'a> {
         let (file, found) = (self.file().to_owned(), "there are no rows");
         Err(DatasetError::NoRows { file, found, remedy: "add the measurements, one a line".into() })
     }
+}
+
+/// All cells of a row, one behind the other, where each is UTF-8: two broken ones may make a character together.
+fn text_of(cells: &ByteRecord) -> Option<&str> {
+    let text = from_utf8(cells.as_slice()).ok()?;
+    let is_whole = text.is_ascii() || cells.iter().all(|cell| from_utf8(cell).is_ok());
+    is_whole.then_some(text)
+}
+
+/// What is said of the first cell that is not UTF-8.
+fn not_utf8(cells: &ByteRecord, header: &[String]) -> LineProblem {
+    let broken = cells.iter().enumerate().find(|(_, cell)| from_utf8(cell).is_err());
+    let (place, cell) = broken.unwrap_or((0, cells.as_slice()));
+    let column = match header.get(place).filter(|name| !name.is_empty()) {
+        Some(name) => format!("\"{name}\""),
+        None => (place + 1).to_string(),
+    };
+    LineProblem::CellNotUtf8 { column, value: quoted(&String::from_utf8_lossy(cell)) }
 }
 
 /// A cell without the spaces and quotation marks round it; most have none.

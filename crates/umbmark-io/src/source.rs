@@ -108,11 +108,6 @@ impl<'a> Source<'a> {
     pub fn failed(&self, error: &io::Error) -> DatasetError {
         if self.packed { damaged(&self.file, self.given, error) } else { unreadable(Path::new(&self.file), error) }
     }
-
-    /// The error of a line that is not text.
-    pub fn not_utf8(&self, line: usize) -> DatasetError {
-        not_utf8(&self.file, line, NOT_UTF8)
-    }
 }
 
 impl Read for Source<'_> {
