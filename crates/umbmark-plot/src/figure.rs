@@ -141,6 +141,10 @@ pub struct Layer {
     pub said: Vec<String>,
     /// The run that each place belongs to, as its index in the dataset; empty for what is no run's.
     pub runs: Vec<usize>,
+    /// Where in its run each place is: how far the wheels had rolled by then, on average and whatever way \[m\], not a number where that is
+    /// not known. Empty where a place stands for a run as a whole.
+    #[serde(default, with = "gaps")]
+    pub rolled: Vec<f64>,
     /// The direction that all of it is about.
     pub direction: Option<Direction>,
 }
@@ -149,7 +153,8 @@ impl Layer {
     /// Places with a name in the legend.
     pub fn new(name: impl Into<String>, tone: Tone, mark: Mark, places: impl IntoIterator<Item = [f64; 2]>) -> Layer {
         let (x, y) = places.into_iter().map(|[x, y]| (x, y)).unzip();
-        Layer { name: name.into(), tone, mark, x, y, said: Vec::new(), runs: Vec::new(), direction: None }
+        let (said, runs, rolled) = (Vec::new(), Vec::new(), Vec::new());
+        Layer { name: name.into(), tone, mark, x, y, said, runs, rolled, direction: None }
     }
 
     /// The same about runs of one direction.
@@ -165,6 +170,11 @@ impl Layer {
     /// The same with the run of each place.
     pub fn from_runs(self, runs: Vec<usize>) -> Layer {
         Layer { runs, ..self }
+    }
+
+    /// The same with the run of each place, and how far its wheels had rolled there \[m\].
+    pub fn along_runs(self, runs: Vec<usize>, rolled: Vec<f64>) -> Layer {
+        Layer { runs, rolled, ..self }
     }
 
     /// Whether nothing of it can be drawn.

@@ -1,5 +1,6 @@
 //! The kinds of figures, one file each.
 
+mod on_demand;
 mod residuals;
 
 use crate::figure::Figure;
@@ -21,7 +22,7 @@ pub struct FigureKind {
 }
 
 register! {
-    /// All kinds, in the order of a report.
+    /// The kinds of a report, in its order.
     pub KINDS: FigureKind = FIGURE in
     return_errors,
     circle,
@@ -52,7 +53,12 @@ pub(crate) fn p_is(p: f64) -> String {
     if p < 0.001 { "p < 0.001".into() } else { format!("p = {p:.3}") }
 }
 
+/// All kinds: first those of a report, then those that are drawn only where they are asked for.
+pub fn all() -> impl Iterator<Item = &'static FigureKind> {
+    KINDS.iter().copied().chain(&on_demand::FIGURES)
+}
+
 /// The kind of this name.
 pub fn find(name: &str) -> Option<&'static FigureKind> {
-    KINDS.iter().copied().find(|kind| kind.name == name)
+    all().find(|kind| kind.name == name)
 }

@@ -11,8 +11,8 @@ use std::sync::LazyLock;
 use snapbox::{Data, assert_data_eq};
 use umbmark_core::action::Action;
 use umbmark_core::diagnose;
-use umbmark_plot::figure::Figure;
-use umbmark_plot::kind::{KINDS, find};
+use umbmark_plot::figure::{Figure, Layer};
+use umbmark_plot::kind::{all, find};
 use umbmark_plot::page::{Provenance, page};
 use umbmark_plot::render::{bitmap, plotly, svg};
 use umbmark_plot::study::{Options, Study};
@@ -29,7 +29,7 @@ static SLOPE: LazyLock<Study> = LazyLock::new(|| study("slope"));
 static TRACKED: LazyLock<Study> = LazyLock::new(|| study("tracked"));
 
 fn drawn(study: &Study) -> Vec<Figure> {
-    KINDS.iter().filter_map(|kind| (kind.build)(study).ok()).collect()
+    all().filter_map(|kind| (kind.build)(study).ok()).collect()
 }
 
 fn golden(figure: &Figure, of: &str) {
@@ -58,7 +58,7 @@ fn figures_of_tracks_are_drawn_as_they_were() {
 #[test]
 fn what_cannot_be_drawn_says_why_in_a_sentence() {
     for study in [&*SLOPE, &*TRACKED] {
-        for kind in KINDS {
+        for kind in all() {
             let Err(absent) = (kind.build)(study) else { continue };
             let why = absent.to_string();
             assert!(why.ends_with('.') && why.len() > 20, "{}: {why}", kind.name);
@@ -85,6 +85,51 @@ fn no_drawing_holds_what_is_no_number() {
             assert!(!text.contains("NaN") && !text.contains(":inf"), "{}", figure.kind);
         }
     }
+}
+
+#[test]
+fn a_place_of_a_run_is_where_its_wheels_had_rolled_so_far_in_every_figure() {
+    let of = |kind: &str| (find(kind).unwrap().build)(&TRACKED).unwrap();
+    let ways = |layer: &Layer, run: usize| -> Vec<f64> {
+        let own = layer.rolled.iter().zip(&layer.runs).filter(|(way, of)| **of == run && way.is_finite());
+        own.map(|(way, _)| *way).collect()
+    };
+    let (along, tracks) = (of("residuals_along"), of("tracks"));
+    let layers = |figure: &Figure| figure.panels.iter().flat_map(|panel| panel.layers.clone()).collect::<Vec<Layer>>();
+    for layer in &layers(&along) {
+        // The axis shows the same way.
+        assert!(layer.rolled.iter().zip(&layer.x).all(|(way, x)| way == x || way.is_nan() && x.is_nan()));
+    }
+    for run in 0..2 {
+        let whole = layers(&along).iter().find_map(|layer| ways(layer, run).last().copied()).unwrap();
+        let drawn: Vec<Vec<f64>> = layers(&tracks).iter().map(|layer| ways(layer, run)).collect();
+        let drawn: Vec<&Vec<f64>> = drawn.iter().filter(|ways| !ways.is_empty()).collect();
+        // Computed, modelled and measured.
+        assert_eq!(drawn.len(), 3);
+        for ways in drawn {
+            assert!(
+                ways.is_sorted() && ways[0] < 0.05 && (ways[ways.len() - 1] - whole).abs() < 0.05,
+                "{ways:?} {whole}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_ways_of_a_trace_are_as_many_as_its_places_or_none() {
+    let mut with = 0;
+    for figure in drawn(&SLOPE).iter().chain(&drawn(&TRACKED)) {
+        let (traces, rolled) = (plotly::figure(figure), plotly::rolled(figure));
+        let (traces, rolled) = (traces["data"].as_array().unwrap(), rolled.as_array().unwrap());
+        assert_eq!(traces.len(), rolled.len(), "{}", figure.kind);
+        for (trace, rolled) in traces.iter().zip(rolled).filter(|(_, rolled)| !rolled.as_array().unwrap().is_empty()) {
+            let count = rolled.as_array().unwrap().len();
+            assert_eq!(trace["customdata"].as_array().unwrap().len(), count, "{}", figure.kind);
+            assert_eq!(trace["x"].as_array().unwrap().len(), count, "{}", figure.kind);
+            with += 1;
+        }
+    }
+    assert!(with > 10, "{with}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use umbmark_io::whole_file::WholeFile;
 use umbmark_plot::figure as core;
-use umbmark_plot::kind::{KINDS, find};
+use umbmark_plot::kind::{all, find};
 use umbmark_plot::render::file::{DOTS_PER_INCH, Format, WIDTHS_MM};
 use umbmark_plot::render::plotly;
 use umbmark_plot::study::{Options, Study};
@@ -177,7 +177,7 @@ impl Figure {
 #[pyfunction]
 pub fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let kinds = PyDict::new(py);
-    KINDS.iter().try_for_each(|kind| kinds.set_item(kind.name, kind.about)).map(|()| kinds)
+    all().try_for_each(|kind| kinds.set_item(kind.name, kind.about)).map(|()| kinds)
 }
 
 /// One figure of a dataset and a model.
@@ -190,7 +190,7 @@ pub fn figure(
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Figure> {
-    let known = || KINDS.iter().map(|kind| kind.name).collect::<Vec<_>>().join(", ");
+    let known = || all().map(|kind| kind.name).collect::<Vec<_>>().join(", ");
     let kind = find(kind)
         .ok_or_else(|| PyValueError::new_err(format!("there is no figure \"{kind}\"; there are {}", known())))?;
     let study = study(py, asked, options(how)?)?;

@@ -6,6 +6,7 @@ import { dataPart } from "./data.js";
 import { drivePart } from "./drive.js";
 import { by, h } from "./elements.js";
 import { figuresPart } from "./figures.js";
+import { marksFor } from "./marks.js";
 import { modelPart } from "./model.js";
 import { Silent, get, latest, post, query } from "./server.js";
 import { storyPart } from "./story.js";
@@ -16,6 +17,7 @@ const catalogue = await get("api/catalogue");
 /** @type {any} */ let bench = null;
 let key = "";
 /** @type {any} */ let job = { running: false, number: 0 };
+/** The number of the last job whose end was seen: a short one may end before it is seen to run. @type {number | null} */ let done = null;
 let placed = "";
 let silent = false;
 
@@ -49,39 +51,40 @@ async function act(act) {
   }
 }
 
-/** @param {string} kind */
-async function begin(kind) {
+/** @param {string} kind @param {any} [what] */
+async function begin(kind, what) {
   clear();
   try {
-    await post(`api/job?${query({ kind })}`);
+    await post(`api/job?${query({ kind })}`, what);
     await refresh();
   } catch (error) {
     fail(/** @type {Error} */ (error));
   }
 }
 
-const drive = drivePart({ hide: (runs) => act({ act: "hide", runs }) });
+const marks = marksFor((mark, isChosen) => figures.mark(mark, drive.mark(mark, isChosen) || (mark?.run ?? ""), isChosen));
+const drive = drivePart({ hide: (runs) => act({ act: "hide", runs }), ...marks });
 const story = storyPart({ act });
 const drag = latest((values) => post("api/predict", values), (told, values) => { drive.model(told.runs); if (Object.keys(values).length) model.error(told.errors?.rmse_m); }, fail);
 const model = modelPart({ act, job: begin, drag, fail, catalogue });
-const figures = figuresPart({ mark: (name) => drive.mark(name), catalogue });
+const figures = figuresPart({ ...marks, catalogue });
 const cloud = cloudPart({ fail, catalogue });
 const data = dataPart({ say, fail, refresh, work: () => choose("work"), catalogue });
 
 // The tour.
 const TOUR = /** @type {[string, (bench: any) => boolean][]} */ ([
   ["Open examples/hidden: drop the folder on the page Data, or start umbmark open examples/hidden.", (b) => Boolean(b)],
-  ["Look at the drive. Drag the time: the robot believes the grey path and stood on the coloured one. The nominal robot is off by about 50 mm.", (b) => Boolean(b)],
-  ["Add wheels and wheelbase, then Fit, then Accept. The error left out falls, but not to zero.", (b) => b?.state.steps.some((/** @type {any} */ s) => s.effects.includes("wheelbase"))],
+  ["Look at the drive. Drag the time: the robot computed the grey path and was measured on the coloured one. The nominal robot is off by about 50 mm.", (b) => Boolean(b)],
+  ["Add wheels and wheelbase, then Fit, then Accept. The cross-validated error falls, but not to zero.", (b) => b?.state.steps.some((/** @type {any} */ s) => s.effects.includes("wheelbase"))],
   ["Before you ask: look at the figures. On which figure does the error repeat? Which effect would do that?", (b) => b?.state.steps.some((/** @type {any} */ s) => s.effects.includes("wheelbase"))],
   ["Ask: What is missing? Compare the first suggestions: their p, and what each would leave.", (b) => Boolean(b?.found) || b?.state.steps.some((/** @type {any} */ s) => s.effects.length > 3)],
-  ["Add the suggestion that you believe, Fit it, and Accept it if the error falls. Does it fall below 10 mm?", (b) => b?.state.steps.some((/** @type {any} */ s) => (s.errors.heldout_rmse_m ?? 1) < 0.01)],
-  ["Try a wrong one: add another effect, Fit, see that the error left out does not fall, and Undo.", () => false],
+  ["Add the suggestion that you trust, Fit it, and Accept it if the error falls. Does it fall below 10 mm?", (b) => b?.state.steps.some((/** @type {any} */ s) => (s.errors.heldout_rmse_m ?? 1) < 0.01)],
+  ["Try a wrong one: add another effect, Fit, see that the cross-validated error does not fall, and Undo.", () => false],
   ["Let Learn do the same, and compare its story with yours.", (b) => b?.state.steps.some((/** @type {any} */ s) => s.learnt)],
   ["Take the model away, with the commands that repeat it.", () => false],
 ]);
 const tourList = h("ol", {});
-const tour = h("details", { class: "card tour", id: "tour" }, h("summary", {}, "A tour of ten minutes: find the hidden effect"), h("p", { class: "hint" }, "A robot drove five squares each way. Something bends its drives that is no wheel. Find out what."), tourList);
+const tour = h("details", { class: "card tour", id: "tour" }, h("summary", {}, "A tour of ten minutes: find the hidden effect"), h("p", { class: "hint" }, "A robot drove five squares each way. Something other than its wheels bends its paths. Find out what."), tourList);
 
 // Take away.
 const report = h("div", { class: "buttons" });
@@ -152,8 +155,10 @@ function working() {
 /** @param {any} told */
 async function take(told) {
   lost(false);
-  const ended = job.running && !told.job.running;
   job = told.job;
+  done ??= job.running ? job.number - 1 : job.number;
+  const ended = !job.running && job.number > /** @type {number} */ (done);
+  if (ended) done = job.number;
   if (ended && job.error) fail(new Error(job.error));
   if (ended && job.kind === "report" && !job.error) report.replaceChildren(h("button", { type: "button", class: "main", id: "take-report", onclick: () => save("api/report.html", "report.html") }, "Save report.html"));
   if (ended && job.kind === "learn" && job.stopped && !job.error) say("Learn was cancelled; what it had found until then stands in the story.");
@@ -176,6 +181,7 @@ async function show() {
   if (placed !== bench.place) {
     placed = bench.place;
     shown = "";
+    marks.choose(null);
     report.replaceChildren();
     data.inspect(true);
     try { drive.data(await get("api/paths")); } catch (error) { fail(/** @type {Error} */ (error)); }
@@ -184,6 +190,7 @@ async function show() {
   story.show(state);
   model.show(bench, job.running || bench.preparing);
   drive.hide(state.hidden);
+  marks.tell();
   const text = state.draft?.model ?? state.steps[state.at].model;
   if (text !== shown) {
     shown = text;
@@ -230,6 +237,7 @@ by("theme").addEventListener("click", () => {
 });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { drive.draw(); cloud.draw(); figures.redraw(); });
 document.addEventListener("keydown", (event) => {
+  if (event.key === "Escape") marks.choose(null);
   if (!(event.ctrlKey || event.metaKey) || event.key !== "Enter" || !bench) return;
   event.preventDefault();
   const next = bench.state.draft?.fitted ? "accept" : "fit";

@@ -129,7 +129,7 @@ export function dataPart(page) {
     const body = rows.map((row, i) => h("tr", {}, h("th", { scope: "row" }, i + 1), row.map(cell)));
     const name = h("input", { id: "typed-name", value: "my robot" });
     root.replaceChildren(h("details", { class: "card", id: "typed" }, h("summary", {}, "Type ten returns from a tape"),
-      h("p", { class: "hint" }, "Drive the square five times each way. Measure where the robot stands, from where it believes to stand: x along its heading at START, y to the left, heading counter-clockwise. A heading may be left empty."),
+      h("p", { class: "hint" }, "Drive the square five times each way. Measure where the robot stands, from where its odometry says it is: x along its heading at START, y to the left, heading counter-clockwise. A heading may be left empty."),
       h("div", { class: "controls" }, h("label", { for: "typed-name" }, "name"), name, ""),
       numbers.map((p, i) => h("div", { class: "controls" }, h("label", { for: `typed-${p.name}`, title: p.meaning }, p.name), h("div", {}, plateInputs[i]), h("span", { class: "small" }, p.unit))),
       h("div", { class: "scroll" }, h("table", { id: "returns" }, h("thead", {}, h("tr", {}, ["return", "direction", "x [mm]", "y [mm]", "heading [deg]"].map((word) => h("th", { scope: "col" }, word)))), h("tbody", {}, body))),
@@ -165,7 +165,7 @@ export function dataPart(page) {
     const faults = (setup.faults ?? []).map((/** @type {any} */ fault) => h("li", { class: "look" }, fault.sentence ?? fault.says ?? JSON.stringify(fault)));
     found.replaceChildren(h("section", { class: "card" },
       h("h2", {}, "What the data hold"),
-      faults.length ? [h("h3", {}, "To be mended first"), h("ul", {}, faults)] : null,
+      faults.length ? [h("h3", {}, "Fix these first"), h("ul", {}, faults)] : null,
       h("h3", {}, "Robot"), h("div", { class: "scroll" }, h("table", { id: "plate-table" }, robot.map(([key, value]) => h("tr", {}, h("th", { scope: "row" }, key), h("td", {}, String(value)))))),
       told.path ? h("p", {}, `Path: ${told.path.shape}, ${Object.entries(told.path.sizes ?? {}).map(([k, v]) => `${k} ${Array.isArray(v) ? "…" : v}`).join(", ")}`) : h("p", {}, "The path is not known."),
       h("h3", {}, "Runs"), h("div", { class: "scroll" }, h("table", {}, h("thead", {}, h("tr", {}, ["test", "direction", "runs", "returns", "headings", "logs"].map((w) => h("th", { scope: "col" }, w)))),

@@ -17,7 +17,7 @@ const VERDICTS = /** @type {Record<string, string>} */ ({
 const SHOWN = 8;
 
 /**
- * @param {{ act: (act: any) => Promise<void>, job: (kind: string) => Promise<void>, drag: (values: any) => void, fail: (error: Error) => void, catalogue: any }} page
+ * @param {{ act: (act: any) => Promise<void>, job: (kind: string, what?: any) => Promise<void>, drag: (values: any) => void, fail: (error: Error) => void, catalogue: any }} page
  */
 export function modelPart(page) {
   const list = h("div", { id: "parts" });
@@ -29,6 +29,8 @@ export function modelPart(page) {
   const undo = button("undo", "Undo", () => page.act({ act: "undo" }));
   const ask = button("diagnose", "What is missing?", () => page.job("diagnose"));
   const learn = button("learn", "Learn", () => page.job("learn"));
+  const others = h("input", { type: "checkbox", id: "fit-others", checked: true });
+  const othersBox = h("p", { class: "small" }, h("label", {}, others, " Fit the other numbers when a slider is released"));
   const suggestions = h("div", { id: "suggestions" });
   const unfit = h("p", { class: "notice bad", hidden: true });
 
@@ -89,7 +91,7 @@ export function modelPart(page) {
   for (const input of [law.name, law.acts, law.text, law.parameters]) input.addEventListener("input", check);
 
   const root = h("div", {},
-    h("section", { class: "card", "aria-label": "The model" }, h("h2", {}, "The model"), unfit, h("div", { class: "buttons" }, first, fit, accept, undo, ask, learn), error, list),
+    h("section", { class: "card", "aria-label": "The model" }, h("h2", {}, "The model"), unfit, h("div", { class: "buttons" }, first, fit, accept, undo, ask, learn), error, othersBox, list),
     h("section", { class: "card", "aria-label": "What is missing" }, h("h2", {}, "What is missing?"), suggestions),
     h("section", { class: "card", "aria-label": "Add an effect" }, h("h2", {}, "Add an effect"),
       h("label", { for: "effect" }, "From the catalogue "), h("div", { class: "buttons" }, filter, add), names, about,
@@ -98,26 +100,54 @@ export function modelPart(page) {
         h("p", { class: "hint" }, `It may depend on: ${page.catalogue.variables.map((/** @type {any} */ v) => `${v.name}${v.unit ? ` [${v.unit}]` : ""}`).join(", ")}.`)))));
 
   /** @type {Record<string, Record<string, number>>} */ let values = {};
+  /** What was shown last: the work, and whether something runs. @type {[any, boolean] | null} */ let last = null;
+  /** Whether a slider is in the hand, or was just moved by a key: it must not be replaced then. */
+  let [grasped, settling] = [false, 0];
+  /** A number that was moved while something ran. @type {(() => void) | null} */ let waiting = null;
+  list.addEventListener("pointerdown", (/** @type {any} */ event) => { grasped = event.target.type === "range"; });
+  for (const name of ["pointerup", "pointercancel"]) window.addEventListener(name, () => { if (grasped) { grasped = false; setTimeout(again); } });
+  function again() { if (last) show(...last); }
 
-  /** @param {any} number @param {string} effect */
-  function slider(number, effect) {
+  /** Sets a number, and fits the others where that is wished and there are any. @param {string} effect @param {string} parameter @param {number} value */
+  function moved(effect, parameter, value) {
+    if (last?.[1]) { waiting = () => moved(effect, parameter, value); return; }
+    // What the server refuses is drawn as it was.
+    drawn = "";
+    const free = (/** @type {any} */ part) => part.free && part.numbers.some((/** @type {any} */ n) => (!n.fixed || n.held) && !(part.effect === effect && n.name === parameter));
+    if (others.checked && last?.[0].model.some(free)) page.job("hold", { effect, parameter, value });
+    else page.act({ act: "set", effect, parameter, value });
+  }
+
+  /** @param {any} number @param {any} part */
+  function slider(number, part) {
+    const { effect } = part;
     const id = `n-${effect}-${number.name}`;
     const reach = 5 * (number.typical || 1);
     const clamp = (/** @type {number} */ v) => Math.min(number.bounds[1] ?? Infinity, Math.max(number.bounds[0] ?? -Infinity, v));
     const middle = number.default;
     const [low, high] = [clamp(Math.min(middle - reach, number.value - reach / 5)), clamp(Math.max(middle + reach, number.value + reach / 5))];
     const box = h("input", { id, type: "number", step: "any", value: plain(number.value), "data-effect": effect, "data-parameter": number.name });
-    const range = h("input", { type: "range", min: low, max: high, step: (high - low) / 1000, value: number.value, "aria-label": `${number.name} of ${effect}` });
+    const range = h("input", { type: "range", id: `r-${effect}-${number.name}`, min: low, max: high, step: (high - low) / 1000, value: number.value, "aria-label": `${number.name} of ${effect}` });
     const dragged = (/** @type {number} */ value) => { values = { [effect]: { [number.name]: value } }; page.drag(values); };
     range.addEventListener("input", () => { box.value = plain(Number(range.value)); dragged(Number(range.value)); });
-    range.addEventListener("change", () => page.act({ act: "set", effect, parameter: number.name, value: Number(range.value) }));
+    let byKey = false;
+    range.addEventListener("pointerdown", () => { byKey = false; });
+    range.addEventListener("keydown", () => { byKey = true; });
+    range.addEventListener("change", () => {
+      // Keys move it step by step: the last one counts.
+      clearTimeout(settling);
+      const release = () => { settling = 0; moved(effect, number.name, Number(plain(Number(range.value)))); };
+      if (byKey) settling = setTimeout(release, 400); else release();
+    });
     box.addEventListener("change", () => {
       const value = Number(box.value);
       if (box.value === "" || !Number.isFinite(value)) { box.setAttribute("aria-invalid", "true"); return; }
-      page.act({ act: "set", effect, parameter: number.name, value });
+      moved(effect, number.name, value);
     });
     const unit = number.unit ? ` [${number.unit}]` : "";
-    return h("div", { class: "number" }, h("label", { for: id, title: number.meaning }, breaks(number.name), unit), box, number.choices.length ? null : range);
+    const hold = h("label", { class: "small" }, h("input", { type: "checkbox", id: `h-${effect}-${number.name}`, "aria-label": `hold ${number.name} of ${effect}`, checked: number.fixed && !number.held, onchange: (/** @type {any} */ e) => page.act({ act: "hold", effect, parameter: number.name, hold: e.target.checked }) }), " hold");
+    return h("div", { class: "number" }, h("label", { for: id, title: number.meaning }, breaks(number.name), unit), box, number.choices.length ? null : range,
+      part.free ? h("div", { class: "held" }, hold, number.held ? h("span", { class: "small" }, "held while the others were fitted") : null) : null);
   }
 
   /** What was drawn last, so that a slider in the hand is not taken away. */
@@ -125,11 +155,13 @@ export function modelPart(page) {
 
   /** @param {any} bench @param {boolean} busy */
   function show(bench, busy) {
+    last = [bench, busy];
+    if (!busy && waiting) { const next = waiting; waiting = null; next(); }
     const { state, model, found } = bench;
     unfit.hidden = !bench.unfit;
     unfit.textContent = bench.unfit ?? "";
     const now = state.draft ?? state.steps[state.at];
-    error.textContent = state.draft && !state.draft.fitted ? `Error with these values: ${mm(now.errors.rmse_m)}` : `Error in the fitted runs: ${mm(now.errors.rmse_m)}; left out: ${mm(now.errors.heldout_rmse_m)}`;
+    error.textContent = state.draft && !state.draft.fitted ? `Error with these values: ${mm(now.errors.rmse_m)}` : `Error in the fitted runs: ${mm(now.errors.rmse_m)}; in runs left out of the fit: ${mm(now.errors.heldout_rmse_m)}`;
     first.hidden = model.length > 0;
     fit.disabled = busy || Boolean(bench.unfit) || !model.some((/** @type {any} */ part) => part.free);
     accept.disabled = busy || !state.draft;
@@ -137,17 +169,18 @@ export function modelPart(page) {
     [ask, learn, first].forEach((one) => { one.disabled = busy || Boolean(bench.unfit); });
     fit.className = state.draft && !state.draft.fitted ? "main" : "";
     accept.className = state.draft?.fitted ? "main" : "";
+    othersBox.hidden = !model.length;
     const key = JSON.stringify(model);
-    if (key !== drawn) {
+    if (key !== drawn && !grasped && !settling) {
       drawn = key;
       const focus = document.activeElement?.id;
       list.replaceChildren(...(model.length ? model.map((/** @type {any} */ part) => h("div", { class: "part", "data-part": part.effect },
         h("header", {}, h("strong", {}, breaks(part.effect)), h("span", {},
-          h("label", { class: "small" }, h("input", { type: "checkbox", checked: part.free, onchange: (/** @type {any} */ e) => page.act({ act: "free", effect: part.effect, free: e.target.checked }) }), " fit "),
+          h("label", { class: "small" }, h("input", { type: "checkbox", id: `f-${part.effect}`, "aria-label": `fit ${part.effect}`, checked: part.free, onchange: (/** @type {any} */ e) => page.act({ act: "free", effect: part.effect, free: e.target.checked }) }), " fit "),
           h("button", { type: "button", "aria-label": `Remove ${part.effect}`, onclick: () => page.act({ act: "remove", effect: part.effect }) }, "×"))),
         part.formula ? h("code", {}, `${part.formula.acts_on} = ${part.formula.text}`) : null,
-        part.numbers.map((/** @type {any} */ number) => slider(number, part.effect)),
-        part.meaning ? h("p", { class: "small" }, part.meaning) : null)) : [h("p", { class: "hint" }, "The nominal robot: nothing is added. Its software is believed.")]));
+        part.numbers.map((/** @type {any} */ number) => slider(number, part)),
+        part.meaning ? h("p", { class: "small" }, part.meaning) : null)) : [h("p", { class: "hint" }, "The nominal robot: nothing is added, and the numbers of its software are used.")]));
       if (focus) document.getElementById(focus)?.focus();
     }
     suggest(found, now, busy);

@@ -13,7 +13,7 @@ export function storyPart(page) {
   const far = h("ol", { class: "steps", id: "reached" });
   const so = h("div", { hidden: true, role: "status" }, h("h3", {}, "What Learn has found so far"), far);
   const root = h("section", { class: "card story", "aria-label": "The story so far" }, h("h2", {}, "The story so far"),
-    h("p", { class: "hint" }, "The bar is the error that is left in runs that were left out of the fit (root mean square)."), list, says, so);
+    h("p", { class: "hint" }, "The bar is the cross-validated error: the root mean square error in runs that were left out of the fit."), list, says, so);
 
   /** @param {any} state */
   function show(state) {
@@ -42,9 +42,9 @@ export function storyPart(page) {
     const before = state.draft ? state.steps[state.at] : state.steps[state.at - 1];
     if (!now || !before) return;
     const [was, is] = [leaves(before.errors), leaves(now.errors)];
-    if (state.draft && !state.draft.fitted) says.textContent = `With these values the error is ${mm(is)}. Fit says what the best ones leave.`;
-    else if (is < was) { says.className = "falls"; says.textContent = `▼ The error left out falls from ${mm(was)} to ${mm(is)}.`; }
-    else { says.className = "rises"; says.textContent = `▲ The error left out does not fall: ${mm(was)} before, ${mm(is)} now.`; }
+    if (state.draft && !state.draft.fitted) says.textContent = `With these values the error is ${mm(is)}. Fit finds the best values.`;
+    else if (is < was) { says.className = "falls"; says.textContent = `▼ The cross-validated error falls from ${mm(was)} to ${mm(is)}.`; }
+    else { says.className = "rises"; says.textContent = `▲ The cross-validated error does not fall: ${mm(was)} before, ${mm(is)} now.`; }
   }
   /** Steps that learn has reached and may still take back; its end makes them the story. @param {any[]} steps */
   function reached(steps) {

@@ -8,7 +8,8 @@ use umbmark_core::effect::{Formula, Model, Part, Target};
 use umbmark_io::ModelFile;
 
 use crate::bench::{Bench, Trouble};
-use crate::state::{Draft, Step};
+use crate::state::{Draft, Held, Step};
+use crate::words;
 
 /// A change of the work.
 #[derive(Clone, Debug, Deserialize)]
@@ -52,6 +53,15 @@ pub enum Act {
         /// The value.
         value: f64,
     },
+    /// Holds a number of a free effect in fits, or lets them change it again.
+    Hold {
+        /// The effect.
+        effect: String,
+        /// Its parameter.
+        parameter: String,
+        /// Whether fits keep its value.
+        hold: bool,
+    },
     /// Lets fits change an effect, or not.
     Free {
         /// The effect.
@@ -73,6 +83,18 @@ pub enum Act {
         /// Their names.
         runs: Vec<String>,
     },
+}
+
+/// A number that was moved to a value.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Moved {
+    /// Its effect.
+    pub effect: String,
+    /// Its name there.
+    pub parameter: String,
+    /// The value.
+    pub value: f64,
 }
 
 impl Act {
@@ -111,9 +133,32 @@ impl Bench {
                 Ok(())
             }),
             Act::Set { effect, parameter, value } => {
-                self.draft(&format!("{parameter} of {effect} set"), None, |model| {
-                    has(model, effect)?;
-                    model.set(effect, parameter, *value).map_err(Trouble::because)
+                let model = self.model()?;
+                has(&model, effect)?;
+                let own = Held { effect: effect.clone(), parameter: parameter.clone() };
+                let words = if own.is_fixed(&model) {
+                    words::held(effect, parameter, *value)
+                } else {
+                    words::set(effect, parameter)
+                };
+                self.draft(&words, None, |model| model.set(effect, parameter, *value).map_err(Trouble::because))
+            }
+            Act::Hold { effect, parameter, hold } => {
+                let model = self.model()?;
+                has(&model, effect)?;
+                let value = model.get(effect, parameter);
+                let value = value.ok_or_else(|| Trouble(format!("{effect} has no {parameter}.")))?;
+                let words = if *hold { words::held(effect, parameter, value) } else { words::free(effect, parameter) };
+                let own = Held { effect: effect.clone(), parameter: parameter.clone() };
+                self.draft(&words, None, |model| {
+                    fix(model, &own, *hold);
+                    Ok(())
+                })?;
+                // What is held by name is so in the next fit too.
+                self.change(|state| {
+                    let draft = state.draft.as_mut().filter(|draft| draft.held.as_ref() == Some(&own));
+                    draft.into_iter().for_each(|draft| draft.held = None);
+                    Ok(())
                 })
             }
             Act::Free { effect, free } => {
@@ -160,17 +205,10 @@ impl Bench {
         let text = ModelFile::new(model).text();
         self.change(|state| {
             // Words of the draft tell all that was done since the step.
-            let before = state.draft.take().map(|draft| (draft.words, draft.p_adjusted));
-            let (before, p_before) = before.unwrap_or_default();
-            let begun = || before.clone() + ", " + words;
-            let words = if before.is_empty() || words.ends_with(" set") && before.ends_with(" set") {
-                words.to_owned()
-            } else if words.ends_with(" set") {
-                before.clone()
-            } else {
-                begun()
-            };
-            state.draft = Some(Draft { words, model: text, errors, fitted: false, p_adjusted: p.or(p_before) });
+            let before = state.draft.take().map(|draft| (draft.words, draft.p_adjusted, draft.held));
+            let (before, p_before, held) = before.unwrap_or_default();
+            let words = words::after(&before, words);
+            state.draft = Some(Draft { words, model: text, errors, fitted: false, held, p_adjusted: p.or(p_before) });
             Ok(())
         })
     }
@@ -190,6 +228,16 @@ impl Bench {
             Ok(())
         })
     }
+}
+
+/// Holds a number of a free effect in fits, or lets them change it again.
+pub fn fix(model: &mut Model, number: &Held, hold: bool) {
+    let own = model.parts().iter().find(|part| part.effect.name() == number.effect && part.free);
+    let Some(mut part) = own.cloned() else { return };
+    part.fixed.retain(|name| *name != number.parameter);
+    let name = part.effect.parameters().iter().map(|p| p.name).find(|name| *name == number.parameter);
+    part.fixed.extend(name.filter(|_| hold));
+    model.adopt(&part);
 }
 
 /// The part of a model with this effect.

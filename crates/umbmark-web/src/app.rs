@@ -27,7 +27,7 @@ use umbmark_plot::page::{Origin, Provenance, page};
 use umbmark_plot::render::{legend, plotly};
 use umbmark_plot::study::{Options, Study};
 
-use crate::act::{Act, formula_of};
+use crate::act::{Act, Moved, formula_of};
 use crate::bench::{Bench, MODEL, Trouble};
 use crate::cloud;
 use crate::dropped;
@@ -177,7 +177,7 @@ impl App {
                 Err(trouble) => Err(trouble).into(),
             },
             ("POST", "api/formula") => read(&asked.body).and_then(|law: Law| checked(&law)).into(),
-            ("POST", "api/job") => self.job(&query("kind").unwrap_or_default()).into(),
+            ("POST", "api/job") => self.job(&query("kind").unwrap_or_default(), &asked.body).into(),
             ("POST", "api/cancel") => {
                 self.jobs.stop();
                 Ok(json!({})).into()
@@ -341,14 +341,21 @@ impl App {
         self.pool.install(|| bench.predict(&values))
     }
 
-    /// Begins long work.
-    fn job(&self, kind: &str) -> Result<Value, Trouble> {
+    /// Begins long work, of which some is told what to do.
+    fn job(&self, kind: &str, what: &[u8]) -> Result<Value, Trouble> {
         let (bench, pool) = (self.bench()?, Arc::clone(&self.pool));
         let number = match kind {
             "fit" => self.jobs.begin("fit", move |_| {
                 bench.wait();
                 pool.install(|| bench.fit())
             }),
+            "hold" => {
+                let moved: Moved = read(what)?;
+                self.jobs.begin("fit", move |_| {
+                    bench.wait();
+                    pool.install(|| bench.hold(&moved))
+                })
+            }
             "diagnose" => self.jobs.begin("diagnose", move |watch| {
                 bench.wait();
                 pool.install(|| bench.diagnose(watch))
@@ -387,7 +394,7 @@ impl App {
             .collect();
         let runs: Vec<_> = study.data.runs.iter().map(|run| run.name.clone()).collect();
         Ok(json!({
-            "plot": plotly::figure(&figure), "title": figure.title, "told": figure.told, "legend": legend, "table": figure.table, "runs": runs,
+            "plot": plotly::figure(&figure), "rolled": plotly::rolled(&figure), "title": figure.title, "told": figure.told, "legend": legend, "table": figure.table, "runs": runs,
         }))
     }
 
@@ -465,7 +472,7 @@ fn catalogue() -> Value {
         "effects": CATALOGUE.iter().map(|entry| result::Effect::from(*entry)).collect::<Vec<_>>(),
         "acts_on": Target::ALL.map(Target::name),
         "variables": Formula::variables(),
-        "figures": kind::KINDS.iter().map(|kind| json!({ "name": kind.name, "about": kind.about })).collect::<Vec<_>>(),
+        "figures": kind::all().map(|kind| json!({ "name": kind.name, "about": kind.about })).collect::<Vec<_>>(),
         "targets": TARGETS.iter().map(|target| json!({ "name": target.name, "about": target.about })).collect::<Vec<_>>(),
         "plate": Robot::NUMBERS.iter().map(|p| json!({ "name": p.name, "unit": p.unit, "meaning": p.meaning, "usual": usual(p) })).collect::<Vec<_>>(),
         "paper": of_the_paper(),

@@ -21,9 +21,10 @@ use umbmark_core::watch::Watch;
 use umbmark_io::{ModelFile, Topics};
 use umbmark_plot::study::{Absent, Drives, Options, Study};
 
-use crate::act::has;
+use crate::act::{Act, Moved, fix, has};
 use crate::later::Later;
-use crate::state::{Draft, Errors, State, Step, VERSION};
+use crate::state::{Draft, Errors, Held, State, Step, VERSION};
+use crate::words;
 
 /// Suggestions whose worth is worked out.
 const WORTHS: usize = 3;
@@ -185,7 +186,7 @@ impl Bench {
         let model = self.parse(&text)?;
         Ok(json!({
             "state": work.state,
-            "model": self.parts(&model),
+            "model": self.parts(&model, work.state.draft.as_ref().and_then(|draft| draft.held.as_ref())),
             "found": of(&work.found),
             "fitted": of(&work.fitted),
             "unfit": self.kept.found().and_then(Result::err).map(|trouble| trouble.to_string()),
@@ -197,7 +198,7 @@ impl Bench {
     }
 
     /// The effects of a model, with what a form needs of their numbers.
-    fn parts(&self, model: &Model) -> Vec<Value> {
+    fn parts(&self, model: &Model, held: Option<&Held>) -> Vec<Value> {
         let part = |part: &Part| {
             let numbers = part.effect.parameters().iter().zip(&part.values).map(|(parameter, value)| {
                 let default = parameter.default.resolve(model.robot());
@@ -205,6 +206,7 @@ impl Bench {
                     "name": parameter.name, "unit": parameter.unit, "meaning": parameter.meaning, "value": value, "default": default,
                     "typical": parameter.typical, "bounds": [finite(parameter.bounds.0), finite(parameter.bounds.1)],
                     "choices": parameter.choices(), "fixed": part.fixed.contains(&parameter.name),
+                    "held": held.is_some_and(|held| held.is(part.effect.name(), parameter.name)),
                 })
             });
             let formula = part.effect.formula();
@@ -273,6 +275,7 @@ impl Bench {
                     "y": driven.measured.iter().map(|(at, _)| short(at[1])).collect::<Vec<_>>(),
                     "place": driven.measured.iter().map(|(_, place)| *place).collect::<Vec<_>>(),
                 },
+                "rolled": driven.rolled.iter().map(|way| short(*way)).collect::<Vec<_>>(),
                 "dense": driven.dense,
             })
         };
@@ -301,16 +304,38 @@ impl Bench {
         serde_json::to_vec(&Prediction { runs, errors }).map_err(Trouble::because)
     }
 
-    /// Fits the free values of the model that is looked at.
+    /// Fits the free values of the model that is looked at. A number that was held for the last fit is free again.
     pub fn fit(&self) -> Result<(), Trouble> {
-        let (text, model) = (self.model_text(), self.model()?);
+        self.fit_beside(None)
+    }
+
+    /// Sets a number of the model that is looked at and fits its other free numbers, as `fit --fix EFFECT.PARAMETER=VALUE` does.
+    pub fn hold(&self, moved: &Moved) -> Result<(), Trouble> {
+        let Moved { effect, parameter, value } = moved;
+        self.act(&Act::Set { effect: effect.clone(), parameter: parameter.clone(), value: *value })?;
+        self.fit_beside(Some(Held { effect: effect.clone(), parameter: parameter.clone() }))
+    }
+
+    /// Fits the free values of the model that is looked at, but for a number that is held.
+    fn fit_beside(&self, own: Option<Held>) -> Result<(), Trouble> {
+        let (text, mut model) = (self.model_text(), self.model()?);
+        let released = self.draft_now().and_then(|draft| draft.held);
+        released.iter().for_each(|number| fix(&mut model, number, false));
+        // What the user holds by name stays held.
+        let held = own.clone().filter(|number| !number.is_fixed(&model));
+        held.iter().for_each(|number| fix(&mut model, number, true));
         if !model.is_free() {
-            return Err(Trouble("No effect of the model is free: add one, or set a mark at \"fit\".".into()));
+            return Err(Trouble(match &own {
+                Some(_) => "No other number of the model is free.".into(),
+                None => "No number of the model is free: add an effect, or set a mark at \"fit\".".into(),
+            }));
         }
         let (fit, step) = self.kept()?.fit(&model).map_err(Trouble::because)?;
         let told =
             serde_json::to_value(result::Fitted::new(&fit, 1.0 - self.options.size)).map_err(Trouble::because)?;
         let Fit { model, noise, .. } = fit;
+        let said = own.as_ref().and_then(|number| number.words(&model));
+        let released = released.map(|number| words::named(&number.effect, &number.parameter));
         let fitted = ModelFile { noise, ..ModelFile::new(model) }.text();
         self.change(|state| {
             if current(state) != text {
@@ -318,9 +343,10 @@ impl Bench {
             }
             let before = state.draft.take();
             let p_adjusted = before.as_ref().and_then(|draft| draft.p_adjusted);
-            let words = before.map_or_else(|| "fitted anew".into(), |draft| draft.words);
+            let words = before.map_or_else(String::new, |draft| draft.words);
+            let words = words::fitted(&words, released.as_deref(), said.as_deref());
             let errors = Errors::from(&result::Step::from(&step));
-            state.draft = Some(Draft { words, model: fitted.clone(), errors, fitted: true, p_adjusted });
+            state.draft = Some(Draft { words, model: fitted.clone(), errors, fitted: true, held, p_adjusted });
             Ok(())
         })?;
         self.work().fitted = Some((fitted, told));

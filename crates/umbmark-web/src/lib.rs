@@ -16,6 +16,7 @@ mod page;
 mod server;
 mod state;
 mod typed;
+mod words;
 
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::PathBuf;
@@ -27,7 +28,7 @@ use umbmark_core::diagnose;
 use umbmark_io::Topics;
 
 pub use bench::Trouble;
-pub use state::{Draft, Errors, State, StateError, Step};
+pub use state::{Draft, Errors, Held, State, StateError, Step};
 
 /// What is served.
 #[derive(Clone, Debug)]

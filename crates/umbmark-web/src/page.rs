@@ -8,12 +8,13 @@ type File = (&'static str, &'static str, &'static str);
 
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
-const FILES: [File; 12] = [
+const FILES: [File; 13] = [
     ("", "text/html; charset=utf-8", include_str!("../front/index.html")),
     ("style.css", "text/css; charset=utf-8", include_str!("../front/style.css")),
     ("app.js", SCRIPT, include_str!("../front/app.js")),
     ("server.js", SCRIPT, include_str!("../front/server.js")),
     ("elements.js", SCRIPT, include_str!("../front/elements.js")),
+    ("marks.js", SCRIPT, include_str!("../front/marks.js")),
     ("data.js", SCRIPT, include_str!("../front/data.js")),
     ("drive.js", SCRIPT, include_str!("../front/drive.js")),
     ("model.js", SCRIPT, include_str!("../front/model.js")),

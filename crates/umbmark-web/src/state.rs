@@ -4,9 +4,12 @@ use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use umbmark_core::effect::Model;
 use umbmark_core::result;
 use umbmark_io::Existing;
 use umbmark_io::whole_file::{FileError, WholeFile};
+
+use crate::words;
 
 /// The version of the document.
 pub const VERSION: u32 = 1;
@@ -91,8 +94,40 @@ pub struct Draft {
     pub errors: Errors,
     /// Whether its free values are fitted.
     pub fitted: bool,
+    /// The number that was held while the others were fitted; null where all were. The next fit is free to change it.
+    #[serde(default)]
+    pub held: Option<Held>,
     /// p of the effect that was added, as it was suggested; null where nothing was tested.
     pub p_adjusted: Option<f64>,
+}
+
+/// A number of a model.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Held {
+    /// Its effect.
+    pub effect: String,
+    /// Its name there.
+    pub parameter: String,
+}
+
+impl Held {
+    /// Whether it is this number.
+    pub fn is(&self, effect: &str, parameter: &str) -> bool {
+        self.effect == effect && self.parameter == parameter
+    }
+
+    /// Whether fits of a model keep it although its effect is free.
+    pub fn is_fixed(&self, model: &Model) -> bool {
+        let own = model.parts().iter().filter(|part| part.effect.name() == self.effect);
+        own.into_iter().any(|part| part.fixed.iter().any(|name| *name == self.parameter))
+    }
+
+    /// That it is held, and at which value; `None` if the model does not have it.
+    pub fn words(&self, model: &Model) -> Option<String> {
+        let value = model.get(&self.effect, &self.parameter)?;
+        Some(words::held(&self.effect, &self.parameter, value))
+    }
 }
 
 /// Why a document is not read.

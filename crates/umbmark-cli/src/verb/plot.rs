@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use anyhow::Context;
 use serde_json::json;
 use umbmark_plot::figure::Figure;
-use umbmark_plot::kind::{FigureKind, KINDS, find};
+use umbmark_plot::kind::{FigureKind, all, find};
 use umbmark_plot::render::file::{Format, UnknownEnding, WIDTHS_MM};
 
 use crate::Session;
@@ -34,7 +34,7 @@ fn kind(name: &str) -> Result<&'static FigureKind, String> {
 
 /// The kinds of figures, a line each.
 fn kinds() -> String {
-    let lines = KINDS.iter().map(|kind| hanging(&format!("  {}", kind.name), 18, kind.about));
+    let lines = all().map(|kind| hanging(&format!("  {}", kind.name), 18, kind.about));
     format!("Kinds:\n{}", lines.collect::<String>())
 }
 

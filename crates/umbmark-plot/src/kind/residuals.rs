@@ -140,6 +140,11 @@ pub(super) fn with_half(mean: &Mean, scale: f64) -> String {
 
 /// A bin in words.
 fn label(against: &Against, bin: &Bin) -> String {
+    match against.covariate.name {
+        "run" => return of_runs(bin),
+        "last_turn" => return of_last_turn(bin, against.rate.of_turns()).to_owned(),
+        _ => {}
+    }
     let unit = against.covariate.units[usize::from(against.rate.of_turns())];
     let cyclic = against.covariate.cyclic();
     let (scale, unit) = if cyclic { (1f64.to_degrees(), "°") } else { (1.0, unit) };
@@ -155,6 +160,23 @@ fn label(against: &Against, bin: &Bin) -> String {
         format!("{sense}{low} to {high}{space}{unit}")
     } else {
         format!("{sense}over {low}{space}{unit}")
+    }
+}
+
+/// A bin of runs, which are counted from 1 in words.
+fn of_runs(bin: &Bin) -> String {
+    let [first, last] = [bin.span.low + 1.5, bin.span.high + 0.5].map(|run| run.round() as i64);
+    if first == last { format!("run {first}") } else { format!("runs {first} to {last}") }
+}
+
+/// A bin of the sense of the last turn, or of the turn itself.
+fn of_last_turn(bin: &Bin, is_turn: bool) -> &'static str {
+    match (bin.span.low, is_turn) {
+        (low, true) if low < 0.0 => "right turns",
+        (_, true) => "left turns",
+        (low, false) if low < 0.0 => "after a right turn",
+        (low, false) if low > 0.0 => "after a left turn",
+        _ => "before any turn",
     }
 }
 

@@ -1,6 +1,7 @@
 //! Errors along each run.
 
 use umbmark_core::compare::tracks::TrackErrors;
+use umbmark_core::dataset::{Dataset, Run};
 use umbmark_core::path::Direction;
 
 use super::FigureKind;
@@ -23,12 +24,14 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
     let most = (PLACES / model.residuals.len().max(1)).max(OF_RUN);
     let mut lines: [Vec<Layer>; 3] = Default::default();
     for direction in [Some(Direction::Cw), Some(Direction::Ccw), None] {
-        let (mut places, mut runs): ([Vec<[f64; 2]>; 3], Vec<usize>) = Default::default();
+        let (mut places, mut runs, mut rolled): ([Vec<[f64; 2]>; 3], Vec<usize>, Vec<f64>) = Default::default();
         for run in model.residuals.iter().filter(|run| run.direction == direction) {
             let column = |k: usize| run.errors.iter().map(|error| error[k]).collect::<Vec<f64>>();
             let kept = thin(&[&column(0), &column(1), &column(2)], most);
-            let index = study.data.runs.iter().position(|own| own.name == run.run).unwrap_or_default();
+            let (index, is_whole) = of_run(&study.data, &run.run);
             runs.extend(std::iter::repeat_n(index, kept.len() + 1));
+            rolled.extend(kept.iter().map(|i| if is_whole { run.rolled[*i] } else { f64::NAN }));
+            rolled.push(f64::NAN);
             for (k, places) in places.iter_mut().enumerate() {
                 places.extend(kept.iter().map(|i| [run.rolled[*i], COMPONENTS[k].1 * run.errors[*i][k]]));
                 places.push([f64::NAN, f64::NAN]);
@@ -37,7 +40,7 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
         for (lines, places) in lines.iter_mut().zip(places).filter(|(_, places)| !places.is_empty()) {
             let name = direction.map_or("runs".to_owned(), |d| format!("{} runs", d.name()));
             let layer = Layer::new(name, direction.map_or(Tone::Measured, Tone::of), Mark::Line, places);
-            lines.push(Layer { direction, ..layer.from_runs(runs.clone()) });
+            lines.push(Layer { direction, ..layer.along_runs(runs.clone(), rolled.clone()) });
         }
     }
     let panel = |(layers, (component, _, unit)): (Vec<Layer>, (&str, f64, &str))| Panel {
@@ -69,4 +72,30 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
         panels: lines.into_iter().zip(COMPONENTS).map(panel).collect(),
         table: Table::new(["model", "along the way [mm]", "at the ends [mm]"], rows),
     })
+}
+
+/// The index of a run by the name of its residuals, and whether these are of the whole run: a long run is judged in pieces, which are named
+/// by it and by their time, and count the way from their own beginning.
+fn of_run(data: &Dataset, name: &str) -> (usize, bool) {
+    let whole = data.runs.iter().position(|run| run.name == name).map(|index| (index, true));
+    let piece = |run: &Run| name.strip_prefix(run.name.as_str()).is_some_and(|rest| rest.starts_with(", "));
+    whole.or_else(|| Some((data.runs.iter().position(piece)?, false))).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use umbmark_core::effect::TestKind;
+
+    #[test]
+    fn residuals_of_a_piece_are_of_its_run_and_have_no_place_in_it() {
+        let run = |name: &str| {
+            let (name, test) = (name.to_owned(), TestKind::Systematic);
+            Run { name, number: 1, direction: None, test, log: None, returned: None }
+        };
+        let data = Dataset { runs: vec![run("cw_1"), run("cw_10")], ..Dataset::default() };
+        assert_eq!(of_run(&data, "cw_10"), (1, true));
+        assert_eq!(of_run(&data, "cw_10, 0 to 60 s"), (1, false));
+        assert_eq!(of_run(&data, "cw_1, 0 to 60 s"), (0, false));
+    }
 }

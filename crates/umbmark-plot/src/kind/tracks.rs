@@ -62,8 +62,7 @@ fn distance(a: &[f64; 2], b: &[f64; 2]) -> f64 {
 
 /// The largest distance of a measured from a computed place \[m\], and its run.
 fn largest(paths: &Paths) -> (f64, usize) {
-    let all =
-        paths.runs.iter().flat_map(|run| run.measured.iter().map(move |(at, from)| (distance(at, from), run.run)));
+    let all = paths.runs.iter().flat_map(|run| run.pairs().map(move |(at, from)| (distance(&at, &from), run.run)));
     all.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, paths.runs[0].run))
 }
 
@@ -88,11 +87,18 @@ fn panel(paths: &Paths, direction: Option<Direction>, runs: &[&RunPath], scale: 
     let mut layers = Vec::new();
     // What was told is the same for all runs.
     let drawn = if paths.recorded { runs } else { &runs[..1] };
-    layers.push(lines(computed, Tone::Computed, Mark::Line, drawn, |run| run.computed.clone()));
-    let pairs = |run: &RunPath| run.computed.iter().zip(&run.modelled).map(|(a, b)| shown(a, b)).collect();
+    let own = |run: &RunPath| run.rolled.iter().copied().zip(run.computed.iter().copied()).collect();
+    layers.push(lines(computed, Tone::Computed, Mark::Line, drawn, own));
+    let pairs = |run: &RunPath| {
+        let shown = run.computed.iter().zip(&run.modelled).map(|(a, b)| shown(a, b));
+        run.rolled.iter().copied().zip(shown).collect()
+    };
     layers.push(lines("modelled", Tone::Model, Mark::Dashes, drawn, pairs));
     let tone = direction.map_or(Tone::Measured, Tone::of);
-    let seen = |run: &RunPath| run.measured.iter().map(|(at, from)| shown(from, at)).collect();
+    let seen = |run: &RunPath| {
+        let rolled = run.measured.iter().map(|(_, place)| run.rolled[*place]);
+        rolled.zip(run.pairs().map(|(at, from)| shown(&from, &at))).collect()
+    };
     for dense in [true, false] {
         let own: Vec<&RunPath> =
             runs.iter().copied().filter(|run| run.dense == dense && !run.measured.is_empty()).collect();
@@ -107,28 +113,38 @@ fn panel(paths: &Paths, direction: Option<Direction>, runs: &[&RunPath], scale: 
         layers = layers.into_iter().map(|layer| layer.of(direction)).collect();
     }
     if !paths.recorded {
-        layers.iter_mut().filter(|layer| layer.tone != tone).for_each(|layer| layer.runs.clear());
+        for layer in layers.iter_mut().filter(|layer| layer.tone != tone) {
+            layer.runs.clear();
+            layer.rolled.clear();
+        }
     }
     let title = direction.map_or(String::new(), |d| format!("{} runs", d.name()));
     Panel { title, x: Axis::of("x [m]"), y: Axis::of("y [m]"), equal: true, layers }
 }
 
-/// One layer of the lines of many runs, with a gap after each.
-fn lines(name: &str, tone: Tone, mark: Mark, runs: &[&RunPath], places: impl Fn(&RunPath) -> Vec<[f64; 2]>) -> Layer {
+/// One layer of the lines of many runs, with a gap after each; a place comes with how far the wheels had rolled \[m\].
+fn lines(
+    name: &str,
+    tone: Tone,
+    mark: Mark,
+    runs: &[&RunPath],
+    places: impl Fn(&RunPath) -> Vec<(f64, [f64; 2])>,
+) -> Layer {
     let (mut all, mut of) = (Vec::new(), Vec::new());
     for run in runs {
         let own = places(run);
         of.extend(std::iter::repeat_n(run.run, own.len() + 1));
         all.extend(own);
-        all.push([f64::NAN, f64::NAN]);
+        all.push((f64::NAN, [f64::NAN, f64::NAN]));
     }
-    Layer::new(name, tone, mark, all).from_runs(of)
+    let (rolled, all): (Vec<f64>, Vec<[f64; 2]>) = all.into_iter().unzip();
+    Layer::new(name, tone, mark, all).along_runs(of, rolled)
 }
 
 fn table(study: &Study, paths: &Paths) -> Table {
     let row = |run: &RunPath| {
-        let most = run.measured.iter().map(|(at, from)| distance(at, from)).fold(0.0, f64::max);
-        let end = run.measured.last().map(|(at, from)| distance(at, from));
+        let off: Vec<f64> = run.pairs().map(|(at, from)| distance(&at, &from)).collect();
+        let (most, end) = (off.iter().copied().fold(0.0, f64::max), off.last());
         [
             study.data.runs[run.run].name.clone(),
             run.measured.len().to_string(),

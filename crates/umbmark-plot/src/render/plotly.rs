@@ -41,7 +41,7 @@ pub fn figure(figure: &Figure) -> Value {
         let (x, y) = axes(panel, &number, domain);
         layout.insert(format!("xaxis{number}"), x);
         layout.insert(format!("yaxis{number}"), y);
-        data.extend(panel.layers.iter().filter(|layer| !layer.is_empty()).map(|layer| trace(layer, &number)));
+        data.extend(drawn(panel).map(|layer| trace(layer, &number)));
         if !panel.title.is_empty() {
             titles.push(title(&panel.title, domain[1]));
         }
@@ -49,6 +49,17 @@ pub fn figure(figure: &Figure) -> Value {
     }
     layout.insert("annotations".into(), json!(titles));
     json!({ "data": data, "layout": layout })
+}
+
+/// How far the wheels had rolled at each place of each trace of a [`figure`] \[m\], in the order of its `data`: a page that links figures
+/// finds a place of a run in the others by it. Empty for traces whose places stand for whole runs, or for none.
+pub fn rolled(figure: &Figure) -> Value {
+    figure.panels.iter().flat_map(drawn).map(|layer| numbers(&layer.rolled)).collect()
+}
+
+/// The layers of a panel that become traces.
+fn drawn(panel: &Panel) -> impl Iterator<Item = &Layer> {
+    panel.layers.iter().filter(|layer| !layer.is_empty())
 }
 
 /// Height of a panel \[px\].

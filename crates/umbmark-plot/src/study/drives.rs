@@ -35,6 +35,8 @@ pub struct Driven {
     pub direction: Option<Direction>,
     /// Time of each place since the first \[s\]; empty where no time is known.
     pub time: Vec<f64>,
+    /// How far the wheels had rolled at each place, on average and whatever way \[m\].
+    pub rolled: Vec<f64>,
     /// As the robot computed it.
     pub computed: Vec<Pose2>,
     /// As measured, each with the place among those computed where the robot then was.
@@ -86,12 +88,15 @@ fn told(index: usize, run: &Run, path: &Path, robot: &Robot) -> Option<Driven> {
     let column = |of: fn(&Pose2) -> f64| computed.iter().map(of).collect::<Vec<f64>>();
     let kept = thin(&[&column(|pose| pose.x), &column(|pose| pose.y)], 4 * OF_RUN.0);
     let computed: Vec<Pose2> = kept.iter().map(|place| computed[*place]).collect();
+    let rolled = rolled(&track);
+    let rolled = kept.iter().map(|place| rolled[*place]).collect();
     let end = path.end(direction);
     let last = computed.len().saturating_sub(1);
     Some(Driven {
         run: index,
         direction: Some(direction),
         time: Vec::new(),
+        rolled,
         computed,
         measured: vec![([end.x + error.x, end.y + error.y], last)],
         dense: false,
@@ -116,6 +121,17 @@ fn driven(log: &TickLog, robot: &Robot, place: RunContext, most: usize) -> Resul
     let computed = track.poses(&Model::new(robot).chain());
     let places = watched.iter().enumerate().filter(|(_, (_, seen))| *seen);
     let measured = places.map(|(place, (pose, _))| ([pose.x, pose.y], place)).collect();
-    let (dense, kept) = (seen.len() >= DENSE, (0..computed.len()).collect());
-    Ok(Driven { run: 0, direction: place.direction, time, computed, measured, dense, track, kept })
+    let (dense, kept, rolled) = (seen.len() >= DENSE, (0..computed.len()).collect(), rolled(&track));
+    Ok(Driven { run: 0, direction: place.direction, time, rolled, computed, measured, dense, track, kept })
+}
+
+/// How far the wheels had rolled at each observation \[m\], as [`TrackResiduals`](umbmark_core::compare::tracks::TrackResiduals) count it.
+fn rolled(track: &Track) -> Vec<f64> {
+    let mut sum = 0.0;
+    let pieces = track.travel().iter().zip(track.contexts()).map(|(travel, at)| {
+        sum += travel.rolled().max(at.aside.way.abs());
+        sum
+    });
+    let after: Vec<f64> = std::iter::once(0.0).chain(pieces).collect();
+    track.seen_after().iter().map(|made| after[*made]).collect()
 }

@@ -25,8 +25,10 @@ pub struct RunPath {
     pub computed: Vec<[f64; 2]>,
     /// As the model has it, beside the computed places.
     pub modelled: Vec<[f64; 2]>,
-    /// As measured, each with where the robot computed to be.
-    pub measured: Vec<([f64; 2], [f64; 2])>,
+    /// How far the wheels had rolled at each of the computed places \[m\].
+    pub rolled: Vec<f64>,
+    /// As measured, each with its place among the computed ones.
+    pub measured: Vec<([f64; 2], usize)>,
     /// Whether the measured places make a line.
     pub dense: bool,
 }
@@ -37,13 +39,19 @@ impl Paths {
         let model = study.model()?;
         let Drives { runs, recorded } = Drives::of(&study.data)?;
         let path = |driven: &Driven| {
-            let computed = xy(&driven.computed);
-            let measured = driven.measured.iter().map(|(seen, place)| (*seen, computed[*place])).collect();
-            let modelled = xy(&driven.modelled(model));
+            let (computed, modelled) = (xy(&driven.computed), xy(&driven.modelled(model)));
             let Driven { run, direction, dense, .. } = *driven;
-            RunPath { run, direction, computed, modelled, measured, dense }
+            let (rolled, measured) = (driven.rolled.clone(), driven.measured.clone());
+            RunPath { run, direction, computed, modelled, rolled, measured, dense }
         };
         Ok(Paths { runs: runs.iter().map(path).collect(), recorded })
+    }
+}
+
+impl RunPath {
+    /// The measured places, each with where the robot was by its own count.
+    pub fn pairs(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+        self.measured.iter().map(|(at, place)| (*at, self.computed[*place]))
     }
 }
 
