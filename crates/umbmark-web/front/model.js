@@ -144,10 +144,12 @@ export function modelPart(page) {
       if (box.value === "" || !Number.isFinite(value)) { box.setAttribute("aria-invalid", "true"); return; }
       moved(effect, number.name, value);
     });
+    // Of an effect with one number, "fit" says the same.
+    const holds = part.numbers.length > 1 || (number.fixed && !number.held);
     const unit = number.unit ? ` [${number.unit}]` : "";
     const hold = h("label", { class: "small" }, h("input", { type: "checkbox", id: `h-${effect}-${number.name}`, "aria-label": `hold ${number.name} of ${effect}`, checked: number.fixed && !number.held, onchange: (/** @type {any} */ e) => page.act({ act: "hold", effect, parameter: number.name, hold: e.target.checked }) }), " hold");
     return h("div", { class: "number" }, h("label", { for: id, title: number.meaning }, breaks(number.name), unit), box, number.choices.length ? null : range,
-      part.free ? h("div", { class: "held" }, hold, number.held ? h("span", { class: "small" }, "held while the others were fitted") : null) : null);
+      part.free && (holds || number.held) ? h("div", { class: "held" }, holds ? hold : null, number.held ? h("span", { class: "small" }, "held while the others were fitted") : null) : null);
   }
 
   /** What was drawn last, so that a slider in the hand is not taken away. */

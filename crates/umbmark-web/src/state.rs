@@ -218,6 +218,21 @@ mod tests {
     }
 
     #[test]
+    fn a_draft_that_tells_of_no_held_number_holds_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.json");
+        let held = Some(Held { effect: "wheelbase".into(), parameter: "e_b".into() });
+        let state = State { draft: Some(Draft { held, ..Draft::default() }), ..some() };
+        state.write(&file).unwrap();
+        assert_eq!(State::read(&file).unwrap(), Some(state.clone()));
+        let mut written = serde_json::to_value(&state).unwrap();
+        written["draft"].as_object_mut().unwrap().remove("held");
+        std::fs::write(&file, written.to_string()).unwrap();
+        let read = State::read(&file).unwrap().and_then(|state| state.draft).unwrap();
+        assert_eq!(read, Draft::default());
+    }
+
+    #[test]
     fn a_document_that_is_none_is_refused_with_the_reason() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.json");

@@ -190,3 +190,28 @@ fn table(pairs: &[(&Against, &Against)]) -> Table {
     });
     Table::new(["error", "where", "nominal robot", "model"], rows)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use umbmark_core::compare::tracks::Span;
+
+    fn bin(low: f64, high: f64) -> Bin {
+        Bin { span: Span { low, high, sense: 0.0 }, amount: 1.0, mean: None }
+    }
+
+    #[test]
+    fn runs_are_counted_from_one_and_bins_of_several_say_both_ends() {
+        assert_eq!(of_runs(&bin(-0.5, 0.5)), "run 1");
+        assert_eq!(of_runs(&bin(1.5, 3.5)), "runs 3 to 4");
+    }
+
+    #[test]
+    fn the_sense_of_the_last_turn_is_a_word() {
+        let ends = [[-1.0, 0.0], [0.0, 1.0], [1.0, f64::INFINITY]].map(|[low, high]| bin(low, high));
+        let of = |is_turn: bool| ends.iter().map(|bin| of_last_turn(bin, is_turn)).collect::<Vec<_>>();
+        assert_eq!(of(false), ["after a right turn", "before any turn", "after a left turn"]);
+        assert_eq!(of(true)[0], "right turns");
+        assert_eq!(of(true)[2], "left turns");
+    }
+}
