@@ -157,12 +157,18 @@ class Page:
 
     def mouse(self, element: str, x: float, y: float, *, click: bool = False) -> None:
         """Moves the pointer to a point of an element, from its left upper corner."""
-        script = """const e = document.querySelector(arguments[0]);
-        e.scrollIntoView({ block: "center" });
-        const { left, top } = e.getBoundingClientRect(); return [left, top];"""
-        left, top = self.run(script, element)
+        # Drawings get their height when they are painted.
+        script = """const [element, done] = arguments;
+        const e = document.querySelector(element);
+        requestAnimationFrame(() => requestAnimationFrame(() => {
+          e.scrollIntoView({ block: "center" });
+          const { left, top } = e.getBoundingClientRect();
+          done([left, top]);
+        }));"""
+        left, top = self.browser.execute_async_script(script, element)
         chain = ActionChains(self.browser)
-        chain.w3c_actions.pointer_action.move_to_location(round(left + x), round(top + y))
+        pointer: Any = chain.w3c_actions.pointer_action
+        pointer.move_to_location(round(left + x), round(top + y))
         chain.perform()
         if click:
             ActionChains(self.browser).click().perform()
