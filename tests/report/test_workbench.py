@@ -344,7 +344,7 @@ def test_a_place_of_the_strip_is_chosen_by_mouse_and_keys_and_marked_in_the_figu
     assert 0.0 < seconds[1] - seconds[0] < 1.5
     page.press(Keys.END)
     page.wait(says + ".includes('79.7 s')")
-    page.press(Keys.ARROW_DOWN if "ccw" in first else Keys.ARROW_UP)
+    page.press(Keys.ARROW_UP if "ccw" in first else Keys.ARROW_DOWN)
     page.wait(f"return !({says[7:]}).startsWith({first.split(', ')[0]!r})")
     name = page.text("drive-says").split(", ")[0]
     page.click("tab-figures")
