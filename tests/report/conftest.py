@@ -82,3 +82,53 @@ def browser() -> Iterator[webdriver.Chrome]:
         window = webdriver.Chrome(options=options, service=service)
         yield window
         window.quit()
+
+
+class Server:
+    """A workbench that ends with the test."""
+
+    def __init__(self, *words: str | Path, folder: Path) -> None:
+        command = [COMMAND, "open", "--no-browser", *words]
+        self.process = subprocess.Popen(
+            command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+        )
+        assert self.process.stdout is not None
+        self.address = self.process.stdout.readline().strip()
+        assert self.address.startswith("http://127.0.0.1:")
+
+    def kill(self) -> None:
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.communicate()
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[Server]:
+    """A workbench without data."""
+    if not COMMAND.exists():
+        pytest.skip(f"{COMMAND} is not built (cargo build)")
+    running = Server(folder=tmp_path)
+    yield running
+    running.kill()
+
+
+@pytest.fixture
+def slope(tmp_path: Path) -> Iterator[Server]:
+    """A workbench with return poses."""
+    if not COMMAND.exists():
+        pytest.skip(f"{COMMAND} is not built (cargo build)")
+    shutil.copytree(DATA / "slope", tmp_path / "slope")
+    running = Server("slope", folder=tmp_path)
+    yield running
+    running.kill()
+
+
+@pytest.fixture
+def tracked(tmp_path: Path) -> Iterator[Server]:
+    """A workbench with a tracked run each way."""
+    if not COMMAND.exists():
+        pytest.skip(f"{COMMAND} is not built (cargo build)")
+    shutil.copytree(DATA / "tracked", tmp_path / "tracked")
+    running = Server("tracked", folder=tmp_path)
+    yield running
+    running.kill()
