@@ -386,7 +386,7 @@ fn what_cannot_be_done_is_said_in_a_sentence_and_changes_nothing() {
     assert_eq!(job.0, 200);
     std::thread::sleep(Duration::from_millis(300));
     assert!(
-        server.get("api/state").json()["job"]["error"].as_str().unwrap().contains("No effect of the model is free")
+        server.get("api/state").json()["job"]["error"].as_str().unwrap().contains("No number of the model is free")
     );
     assert!(server.post("api/job?kind=dance", &json!({})).error().contains("dance"));
     assert_eq!(server.get("api/state").json()["bench"]["state"], before);

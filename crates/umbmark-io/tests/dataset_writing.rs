@@ -168,7 +168,11 @@ fn the_files_of_init_are_read_once_they_are_filled_in() {
     let example = text.lines().rev().find_map(|line| line.strip_prefix("# cw,")).unwrap();
     std::fs::write(&returns, format!("{text}cw,{example}\nccw,{example}\n")).unwrap();
     let untouched = umbmark_io::load(&folder).unwrap();
-    assert!(untouched.warnings[0].starts_with("robot.toml has the numbers of an example"), "{:?}", untouched.warnings);
+    assert!(
+        untouched.warnings[0].starts_with("robot.toml still has the numbers of the example"),
+        "{:?}",
+        untouched.warnings
+    );
     let mine =
         std::fs::read_to_string(&robot).unwrap().replace("# counter_bits", "counter_bits").replace("my robot", "R2");
     std::fs::write(&robot, mine).unwrap();
