@@ -1,11 +1,13 @@
 """Settings and fixtures of all tests."""
 
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
 import matplotlib as mpl
 import pytest
 from hypothesis import settings
+from matplotlib import pyplot
 from recorded import TICKS_PER_REVOLUTION
 
 # A machine under load is slow, not wrong.
@@ -14,6 +16,13 @@ settings.load_profile("umbmark")
 mpl.use("Agg")
 
 COMMAND = Path(__file__).parents[3] / "target/release/umbmark"
+
+
+@pytest.fixture(autouse=True)
+def closed() -> Iterator[None]:
+    """Close all figures."""
+    yield
+    pyplot.close("all")
 
 
 @pytest.fixture(scope="session")

@@ -1,7 +1,7 @@
 """Figures with matplotlib: those of the report, those of results, and what is said without it."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from types import SimpleNamespace
 from typing import Any
@@ -25,13 +25,6 @@ def learnt() -> umbmark.Learnt:
     truth = TRUTH.add("floor_slope", drift_x=0.01)
     truth = truth.add("reference_noise", position_sd_m=5e-4, heading_sd_rad=5e-4)
     return umbmark.learn(umbmark.simulate(truth, PATH, runs=5, reference_rate_hz=5), draws=99)
-
-
-@pytest.fixture(autouse=True)
-def closed() -> Iterator[None]:
-    """Close all figures."""
-    yield
-    pyplot.close("all")
 
 
 def without(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
@@ -69,6 +62,7 @@ def test_figures_of_the_report_have_the_same_panels_ends_and_words(
             if names:
                 assert [label.get_text() for label in ax.get_yticklabels()] == names
         axes[0].figure.canvas.draw()
+        pyplot.close("all")
 
 
 def test_figures_of_the_report_have_the_same_places_and_colours(
@@ -90,6 +84,7 @@ def test_figures_of_the_report_have_the_same_places_and_colours(
             assert colors.to_hex(line.get_color()) == style["color"]
         boxes = [patch for ax in axes for patch in ax.patches]
         assert len(boxes) == sum(len(trace["x"]) for trace in bars), kind
+        pyplot.close("all")
 
 
 def test_intervals_reach_as_far_as_in_the_report(figures: dict[str, umbmark.Figure]) -> None:
