@@ -102,33 +102,30 @@ class Server:
             self.process.communicate()
 
 
+def opened(folder: Path, data: str | None = None) -> Iterator[Server]:
+    """A workbench in a folder, with a copy of some data or without any."""
+    if not COMMAND.exists():
+        pytest.skip(f"{COMMAND} is not built (cargo build)")
+    if data is not None:
+        shutil.copytree(DATA / data, folder / data)
+    running = Server(*[data] if data else [], folder=folder)
+    yield running
+    running.kill()
+
+
 @pytest.fixture
 def server(tmp_path: Path) -> Iterator[Server]:
     """A workbench without data."""
-    if not COMMAND.exists():
-        pytest.skip(f"{COMMAND} is not built (cargo build)")
-    running = Server(folder=tmp_path)
-    yield running
-    running.kill()
+    yield from opened(tmp_path)
 
 
 @pytest.fixture
 def slope(tmp_path: Path) -> Iterator[Server]:
     """A workbench with return poses."""
-    if not COMMAND.exists():
-        pytest.skip(f"{COMMAND} is not built (cargo build)")
-    shutil.copytree(DATA / "slope", tmp_path / "slope")
-    running = Server("slope", folder=tmp_path)
-    yield running
-    running.kill()
+    yield from opened(tmp_path, "slope")
 
 
 @pytest.fixture
 def tracked(tmp_path: Path) -> Iterator[Server]:
     """A workbench with a tracked run each way."""
-    if not COMMAND.exists():
-        pytest.skip(f"{COMMAND} is not built (cargo build)")
-    shutil.copytree(DATA / "tracked", tmp_path / "tracked")
-    running = Server("tracked", folder=tmp_path)
-    yield running
-    running.kill()
+    yield from opened(tmp_path, "tracked")

@@ -1,6 +1,6 @@
 //! Which action is the way out of an error, however deep the error lies in others. No message names it: each edge has words of its own.
 
-use crate::action::Action;
+use crate::action::{Action, Wording};
 use crate::apply::{ApplyError, CompileError};
 use crate::calibrate::CalibrateError;
 use crate::changed::ChangeError;
@@ -77,7 +77,7 @@ pub fn of(error: &(dyn Error + 'static)) -> Option<Action> {
 /// let said = remedy::worded(&find("zzz").unwrap_err(), Action::plain);
 /// assert_eq!(said, "there is no effect \"zzz\"; the catalogue lists them");
 /// ```
-pub fn worded(error: &(dyn Error + 'static), words: crate::action::Wording) -> String {
+pub fn worded(error: &(dyn Error + 'static), words: Wording) -> String {
     match of(error) {
         Some(action) => format!("{error}; {}", action.remedy(words)),
         None => error.to_string(),

@@ -188,7 +188,7 @@ impl Kinematics<'_> {
         self.rows_of_drives().last().map_or(0, |rows| rows.end)
     }
 
-    /// Calls `row_of` with drive, observation and predicted pose of each observation.
+    /// Calls `observed` with drive, observation and predicted pose of each observation.
     fn predict<T: Evaluate>(&self, values: &[T], observed: impl FnMut(&Drive, usize, &Pose2<T>)) {
         evidence::predict(&self.observed.drives, &self.model.chain_with(values), observed);
     }

@@ -104,6 +104,17 @@ impl Track {
         if self.origin == Pose2::IDENTITY { start } else { self.origin.lift().compose(&start) }
     }
 
+    /// How far the wheels have rolled before each piece, and at the end, on average and whatever way, or how far the robot was moved aside
+    /// where that is more \[m\].
+    pub fn rolled(&self) -> Vec<f64> {
+        let mut sum = 0.0;
+        let after = self.travel.iter().zip(&self.contexts).map(|(travel, at)| {
+            sum += travel.rolled().max(at.aside.way.abs());
+            sum
+        });
+        std::iter::once(0.0).chain(after).collect()
+    }
+
     /// Believed wheel travel of each piece \[m\].
     pub fn travel(&self) -> &[WheelTravel] {
         &self.travel

@@ -127,11 +127,6 @@ fn driven(log: &TickLog, robot: &Robot, place: RunContext, most: usize) -> Resul
 
 /// How far the wheels had rolled at each observation \[m\], as [`TrackResiduals`](umbmark_core::compare::tracks::TrackResiduals) count it.
 fn rolled(track: &Track) -> Vec<f64> {
-    let mut sum = 0.0;
-    let pieces = track.travel().iter().zip(track.contexts()).map(|(travel, at)| {
-        sum += travel.rolled().max(at.aside.way.abs());
-        sum
-    });
-    let after: Vec<f64> = std::iter::once(0.0).chain(pieces).collect();
-    track.seen_after().iter().map(|made| after[*made]).collect()
+    let before = track.rolled();
+    track.seen_after().iter().map(|made| before[*made]).collect()
 }

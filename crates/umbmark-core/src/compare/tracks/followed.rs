@@ -93,7 +93,7 @@ pub(super) fn all<'a>(observed: &'a Observed, chain: &Chain<f64>) -> Vec<Followe
 /// Measured poses are moved so that they agree with the model at START, which is fitted to the first of them where it was measured, and
 /// anew where the track jumps; else START is trusted. A heading that was not measured gets the error of the last measured one.
 fn places(run: &ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Vec<MeasuredBlock> {
-    let rolled = rolled(&run.track);
+    let rolled = run.track.rolled();
     let residuals = run.residuals(chain);
     let mut places = Vec::with_capacity(run.blocks.len() + 1);
     if !run.start_seen {
@@ -116,16 +116,6 @@ fn places(run: &ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Vec<Measur
         }
     }
     places
-}
-
-/// Mean unsigned travel of the wheels after each piece \[m\].
-pub(super) fn rolled(track: &Track) -> Vec<f64> {
-    let mut sum = 0.0;
-    let after = track.travel().iter().zip(track.contexts()).map(|(travel, at)| {
-        sum += travel.rolled().max(at.aside.way.abs());
-        sum
-    });
-    std::iter::once(0.0).chain(after).collect()
 }
 
 /// The step to the place that `ends` it, from that before.

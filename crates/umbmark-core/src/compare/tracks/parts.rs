@@ -1,6 +1,6 @@
 //! Where errors arise: in which leg, turn, direction, at which speed, in which run.
 
-use super::followed::{Followed, rolled};
+use super::followed::Followed;
 use super::mean::Mean;
 use crate::geometry::Pose2;
 use crate::inspect::{Done, MoveDone};
@@ -129,7 +129,7 @@ pub(super) struct Made {
 
 /// The moves of a run, each up to where the next begins. Moves without a measurement between them are merged.
 pub(super) fn made(index: usize, run: &Followed, moves: &[MoveDone], time: &[f64]) -> Vec<Made> {
-    let rolled = rolled(&run.observed.track);
+    let rolled = run.observed.track.rolled();
     let made_at = |sample: usize| {
         let since_start = time[sample] - time[0];
         run.observed.track.contexts().partition_point(|at| at.time < since_start - 1e-9)
