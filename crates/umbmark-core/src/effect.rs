@@ -112,6 +112,8 @@ register! {
     speed_slip_right,
     body_speed_slip,
     forward_slip,
+    squared_speed_slip,
+    squared_forward_slip,
     acceleration_slip,
     turn_slip,
     turn_slip_rate,

@@ -15,7 +15,7 @@ pub use floor::{CarpetNap, FloorSlope, FloorSlopeYaw, PlacedBumps};
 pub use gears::{BaseYaw, ContactTrail, DriveScale, SteerCoupling, SteerScale};
 pub use grip::{
     AccelerationSlip, BodySpeedSlip, CasterKick, Crab, DirectionDependentWheelbase, ForwardSlip, LegKick, SpeedSlip,
-    SpeedSlipLeft, SpeedSlipRight, TurnSlip, TurnSlipRate,
+    SpeedSlipLeft, SpeedSlipRight, SquaredForwardSlip, SquaredSpeedSlip, TurnSlip, TurnSlipRate,
 };
 pub use steering::{AxleDistance, FrontWheelGain, FrontWheelZero, SteeringGain, SteeringZero, Understeer};
 pub use wheels::{
@@ -112,7 +112,7 @@ impl fmt::Debug for Law {
 }
 
 /// Every law that a table may hold.
-pub static LAWS: [Law; 39] = [
+pub static LAWS: [Law; 41] = [
     Law::wheels::<MissedCounts>(1, "missed_counts", 3).of_speed(),
     Law::wheels::<EncoderSkew>(2, "encoder_skew", 1).of_speed(),
     Law::body::<EncoderSampling>(3, "encoder_sampling", 1),
@@ -153,4 +153,6 @@ pub static LAWS: [Law; 39] = [
     Law::body::<LegKick>(39, "leg_kick", 3).of_speed(),
     Law::wheels::<BodySpeedSlip>(40, "body_speed_slip", 1).of_speed(),
     Law::wheels::<ForwardSlip>(41, "forward_slip", 1).of_speed(),
+    Law::wheels::<SquaredSpeedSlip>(42, "squared_speed_slip", 1).of_speed(),
+    Law::wheels::<SquaredForwardSlip>(43, "squared_forward_slip", 1).of_speed(),
 ];

@@ -22,7 +22,7 @@ impl Effect for ForwardSlip {
         physics: "What holds the robot back, such as air or a load that it pulls, is shared by both wheels, and both creep at the same speed: \
                   the robot gets less far, and turns as far as it counts.",
         signature: "Ways are short by the share k v, and headings are right. At a single speed this is E_s with E_b of the same size.",
-        confused_with: &["body_speed_slip", "speed_slip", "scale", "wheelbase"],
+        confused_with: &["body_speed_slip", "speed_slip", "squared_forward_slip", "scale", "wheelbase"],
         separated_by: "an arc at each of two speeds, with its heading measured at the end",
         source: "linear creep of a rolling tyre at a common slip speed; 1.5 % per m/s is assumed",
     };

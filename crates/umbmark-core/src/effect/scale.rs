@@ -32,6 +32,8 @@ impl Effect for Scale {
             "speed_slip",
             "body_speed_slip",
             "forward_slip",
+            "squared_speed_slip",
+            "squared_forward_slip",
             "link_length",
             "rear_truck",
             "bumps",

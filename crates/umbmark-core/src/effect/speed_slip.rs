@@ -21,7 +21,7 @@ impl Effect for SpeedSlip {
         equation: "s_w ← (1 - k |v_w|) s_w  for both wheels, v_w the speed of its rim",
         physics: CREEP,
         signature: "Legs and turns fall short by the share k v. At a single speed this is E_s, so on a square it looks like E_b.",
-        confused_with: &["scale", "wheelbase", "body_speed_slip", "forward_slip", "turn_slip", "turn_slip_rate"],
+        confused_with: &["scale", "wheelbase", "body_speed_slip", "forward_slip", "squared_speed_slip", "turn_slip", "turn_slip_rate"],
         separated_by: "one straight leg at each of two speeds, measured by tape",
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };

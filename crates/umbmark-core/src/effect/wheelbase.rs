@@ -26,6 +26,8 @@ impl Effect for Wheelbase {
             "speed_slip",
             "body_speed_slip",
             "forward_slip",
+            "squared_speed_slip",
+            "squared_forward_slip",
             "caster_kick",
             "centripetal_load",
             "roller_scale",

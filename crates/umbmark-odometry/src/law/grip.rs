@@ -45,6 +45,21 @@ fn slip<T: Real>(rolled: &mut T, k: T, at: &Here<T>, wheel: usize) {
     *rolled *= -k * size(*rolled, at, wheel) * at.wheel_speed[wheel].abs() + 1.0;
 }
 
+/// The share of travel that each wheel loses per square of its speed.
+///
+/// `s_w ← (1 - k v_w²) s_w  for both wheels, v_w the speed of its rim`
+pub struct SquaredSpeedSlip;
+
+impl WheelLaw for SquaredSpeedSlip {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
+        for (wheel, rolled) in [&mut travel.left, &mut travel.right].into_iter().enumerate() {
+            let speed = size(*rolled, at, wheel) * at.wheel_speed[wheel];
+            *rolled *= -p[0] * speed * speed + 1.0;
+        }
+    }
+}
+
 /// The share of travel that the left wheel loses per speed.
 ///
 /// `s_L ← (1 - k |v_L|) s_L,  v_L the speed of its rim`
@@ -92,6 +107,21 @@ impl WheelLaw for ForwardSlip {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
         let lost = p[0] * body_speed(travel, at) * (travel.left + travel.right) * 0.5;
+        travel.left -= lost;
+        travel.right -= lost;
+    }
+}
+
+/// The share of the way ahead that is lost per square of the speed of the body, the rotation unchanged.
+///
+/// `s_w ← s_w - k v² (s_L + s_R)/2  for both wheels, v the mean speed of their rims`
+pub struct SquaredForwardSlip;
+
+impl WheelLaw for SquaredForwardSlip {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Here<T>, travel: &mut WheelTravel<T>) {
+        let speed = body_speed(travel, at);
+        let lost = p[0] * speed * speed * (travel.left + travel.right) * 0.5;
         travel.left -= lost;
         travel.right -= lost;
     }
