@@ -25,6 +25,7 @@ mod model;
 mod name;
 mod number;
 mod rollers;
+mod slip_powers;
 mod text;
 mod words;
 
@@ -338,6 +339,12 @@ pub trait Effect {
     /// Whether, with these values, it depends on the [`Context`], so that the path must be cut into small pieces.
     fn varies(_p: &[f64]) -> bool {
         false
+    }
+
+    /// What the same cause may do by another power of the speed, itself among them or not, in the catalogue or not: where runs do not tell
+    /// them apart, the intervals of what is learnt allow for them.
+    fn powers() -> &'static [&'static Entry] {
+        &[]
     }
 
     /// Values of its shapes at which it is tested whether it is missing, [`MAX_SHAPES`] at most; those that are not named keep their usual

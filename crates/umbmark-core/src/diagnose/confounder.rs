@@ -1,5 +1,6 @@
 //! Effects that the model lacks, and that bias what it tells.
 
+use super::Verdict;
 use crate::effect::{find, parameter_of};
 
 /// An effect that the model lacks, of a size that these runs allow, and its bias of fitted numbers.
@@ -49,9 +50,10 @@ impl Confounder {
     }
 }
 
-/// By how much the worst of some confounders, largest first, would move each number, and what would show the first of them; `None` for no
-/// confounder.
-pub(super) fn sentence(confounders: &[Confounder]) -> Option<String> {
+/// Whether the intervals hold, by how much the worst of some confounders, largest first, would move each number, and what would show the
+/// first of them; `None` for no confounder. Beside the verdict "explained" an effect that is missing is a possibility, and beside others a
+/// finding.
+pub(super) fn sentence(confounders: &[Confounder], verdict: Verdict) -> Option<String> {
     let mut worst: Vec<(&Bias, &Confounder)> = Vec::new();
     for own in confounders {
         for bias in &own.biases {
@@ -70,8 +72,9 @@ pub(super) fn sentence(confounders: &[Confounder]) -> Option<String> {
     let shown = find(first.effect)
         .ok()
         .map_or(String::new(), |entry| format!(" What would show {}: {}.", first.effect, entry.about.separated_by));
-    Some(format!(
-        "The intervals hold if the model lacks no effect. These runs allow effects that would move {}.{shown}",
-        moved.join(", ")
-    ))
+    let hold = match verdict {
+        Verdict::Explained => "The intervals hold if the model lacks no effect. These runs allow effects",
+        _ => "The intervals do not allow for what the model does not explain. These runs allow further effects",
+    };
+    Some(format!("{hold} that would move {}.{shown}", moved.join(", ")))
 }

@@ -183,7 +183,7 @@ impl Diagnosis {
     /// What effects that the model lacks would do to its first numbers, in words; `None` where none that these runs allow moves one beyond
     /// its interval.
     pub fn confounding(&self) -> Option<String> {
-        sentence(&self.confounders)
+        sentence(&self.confounders, self.verdict)
     }
 
     /// The effects that at their usual size stay below the noise.

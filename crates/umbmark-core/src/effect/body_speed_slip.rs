@@ -1,5 +1,6 @@
 //! Slip of both wheels that grows with the speed of the body.
 
+use super::slip_powers::OF_BODY;
 use super::speed_slip::{CREEP, PER_SPEED, creeps};
 use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::Robot;
@@ -33,6 +34,10 @@ impl Effect for BodySpeedSlip {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
+    }
+
+    fn powers() -> &'static [&'static Entry] {
+        &OF_BODY
     }
 }
 

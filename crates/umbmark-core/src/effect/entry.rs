@@ -119,6 +119,8 @@ pub struct Entry {
     pub varies: fn(&[f64]) -> bool,
     /// See [`Effect::tried`].
     pub tried: fn(&Shown) -> Vec<Tried>,
+    /// See [`Effect::powers`].
+    pub powers: fn() -> &'static [&'static Entry],
     /// Whether it is the floor's: it stays there when the robot goes elsewhere.
     pub is_of_floor: bool,
     /// Whether its signature is in proportion to what other effects do: it is computed anew when these are fitted anew.
@@ -157,6 +159,7 @@ impl Entry {
             is_credible: E::is_credible,
             varies: E::varies,
             tried: E::tried,
+            powers: E::powers,
             is_of_floor: false,
             rests_on_others: false,
             values: MeanLaws::nothing(),

@@ -1,5 +1,6 @@
 //! Slip ahead that grows with the speed of the body and turns nothing.
 
+use super::slip_powers::AHEAD;
 use super::speed_slip::{PER_SPEED, creeps};
 use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::Robot;
@@ -33,5 +34,9 @@ impl Effect for ForwardSlip {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
+    }
+
+    fn powers() -> &'static [&'static Entry] {
+        &AHEAD
     }
 }

@@ -1,5 +1,6 @@
 //! Slip of both wheels that grows with their speed.
 
+use super::slip_powers::OF_WHEELS;
 use super::words::{either, percent};
 use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::Robot;
@@ -21,7 +22,15 @@ impl Effect for SpeedSlip {
         equation: "s_w ← (1 - k |v_w|) s_w  for both wheels, v_w the speed of its rim",
         physics: CREEP,
         signature: "Legs and turns fall short by the share k v. At a single speed this is E_s, so on a square it looks like E_b.",
-        confused_with: &["scale", "wheelbase", "body_speed_slip", "forward_slip", "squared_speed_slip", "turn_slip", "turn_slip_rate"],
+        confused_with: &[
+            "scale",
+            "wheelbase",
+            "body_speed_slip",
+            "forward_slip",
+            "squared_speed_slip",
+            "turn_slip",
+            "turn_slip_rate",
+        ],
         separated_by: "one straight leg at each of two speeds, measured by tape",
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };
@@ -32,6 +41,10 @@ impl Effect for SpeedSlip {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
+    }
+
+    fn powers() -> &'static [&'static Entry] {
+        &OF_WHEELS
     }
 }
 

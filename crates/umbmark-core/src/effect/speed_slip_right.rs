@@ -1,5 +1,6 @@
 //! Slip of the right wheel that grows with its speed.
 
+use super::slip_powers::OF_RIGHT_WHEEL;
 use super::speed_slip::{CREEP, PER_SPEED, creeps};
 use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::Robot;
@@ -33,5 +34,9 @@ impl Effect for SpeedSlipRight {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
+    }
+
+    fn powers() -> &'static [&'static Entry] {
+        &OF_RIGHT_WHEEL
     }
 }

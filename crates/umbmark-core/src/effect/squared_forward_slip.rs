@@ -1,5 +1,6 @@
 //! Slip ahead that grows with the square of the body's speed and turns nothing.
 
+use super::slip_powers::AHEAD;
 use super::squared_speed_slip::{PER_SQUARE, loses};
 use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::Robot;
@@ -33,5 +34,9 @@ impl Effect for SquaredForwardSlip {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
+    }
+
+    fn powers() -> &'static [&'static Entry] {
+        &AHEAD
     }
 }

@@ -1,5 +1,6 @@
 //! Slip of both wheels that grows with the square of their speed.
 
+use super::slip_powers::OF_WHEELS;
 use super::words::{either, percent};
 use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::Robot;
@@ -35,6 +36,10 @@ impl Effect for SquaredSpeedSlip {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
+    }
+
+    fn powers() -> &'static [&'static Entry] {
+        &OF_WHEELS
     }
 }
 

@@ -1,5 +1,6 @@
 //! Slip that grows with the rate of turn.
 
+use super::slip_powers::IN_TURNS;
 use super::words::{deg, either};
 use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::Robot;
@@ -40,6 +41,10 @@ impl Effect for TurnSlipRate {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
+    }
+
+    fn powers() -> &'static [&'static Entry] {
+        &IN_TURNS
     }
 }
 

@@ -1,12 +1,13 @@
 //! Effects that the runs cannot separate from the model that was learnt.
 //!
 //! An effect is added as one of a class: others have nearly the same signature. With another one in its place the robot's numbers may be
-//! different ones: counts that are missed above a speed and slip that grows from rest on differ by a scale. An effect that is significant,
+//! different ones: counts that are missed above a speed and slip that grows from rest on differ by a scale, and so does slip by another power
+//! of the speed, in the catalogue or not. An effect that is significant,
 //! but lowers no error of runs left out, is not added, and may change the numbers all the same. How far the class reaches in these runs, the
 //! likelihood of the whole model says.
 
 use crate::diagnose::{Diagnosis, Reason};
-use crate::effect::Model;
+use crate::effect::{Entry, Model, find};
 use crate::evidence::tracks::Alone;
 use crate::evidence::{AnyEvidence, Estimate, Evidence, tracks};
 use crate::learn::{Learnt, criteria_of_ends};
@@ -31,16 +32,20 @@ pub struct Other {
     pub weight: f64,
 }
 
-/// The other effects of each class, and those that are significant at this size of their test; those with which the model cannot be fitted,
-/// or of hardly any weight, are left out.
+/// The other effects of each class, each effect by another power of the speed, and the effects that are significant at this size of their
+/// test; those with which the model cannot be fitted, or of hardly any weight, are left out.
 pub(super) fn of(evidence: &AnyEvidence, learnt: &Learnt, size: f64) -> Vec<Other> {
-    let classes = learnt.steps.iter().filter_map(|step| Some((step.added?, &step.class)));
-    let in_place = classes.flat_map(|(added, class)| class.iter().map(move |effect| (Some(added), *effect)));
+    let entries =
+        |class: &[&'static str]| -> Vec<&'static Entry> { class.iter().filter_map(|name| find(name).ok()).collect() };
+    let classes = learnt.steps.iter().filter_map(|step| Some((step.added?, entries(&step.class))));
+    let of_class = classes.flat_map(|(added, class)| class.into_iter().map(move |entry| (Some(added), entry)));
+    let added = learnt.steps.iter().filter_map(|step| find(step.added?).ok());
+    let of_power = added.flat_map(|own| (own.powers)().iter().map(move |entry| (Some(own.about.name), *entry)));
     let significant = learnt.diagnosis.ranking.iter().filter(|suspect| suspect.p_adjusted <= size);
-    let beside = significant.flat_map(|suspect| suspect.class.iter().map(|effect| (None, *effect)));
-    let has = |effect: &str| learnt.model.parts().iter().any(|part| part.effect.name() == effect);
-    let mut pairs: Vec<(Option<&str>, &str)> = Vec::new();
-    for pair in in_place.chain(beside).filter(|(_, effect)| !has(effect)) {
+    let beside = significant.flat_map(|suspect| entries(&suspect.class)).map(|entry| (None, entry));
+    let has = |entry: &Entry| learnt.model.parts().iter().any(|part| part.effect == *entry);
+    let mut pairs: Vec<(Option<&'static str>, &'static Entry)> = Vec::new();
+    for pair in of_class.chain(of_power).chain(beside).filter(|(_, entry)| !has(entry)) {
         if !pairs.contains(&pair) {
             pairs.push(pair);
         }
@@ -49,11 +54,11 @@ pub(super) fn of(evidence: &AnyEvidence, learnt: &Learnt, size: f64) -> Vec<Othe
         return Vec::new();
     }
     let Some((_, aicc)) = fitted(evidence, &learnt.model) else { return Vec::new() };
-    let other = |(added, effect)| {
-        let (other, aicc) = fitted(evidence, &with_other(&learnt.model, added, effect)?)?;
+    let other = |(added, entry): (Option<&'static str>, &'static Entry)| {
+        let (other, aicc) = fitted(evidence, &with_other(&learnt.model, added, entry)?)?;
         let off = |own: &Estimate| value_of(&other, own).map_or(0.0, |value| value - own.value);
         let off = learnt.diagnosis.fitted.iter().map(off).collect();
-        Some((Other { added, effect, off, weight: 0.0 }, aicc))
+        Some((Other { added, effect: entry.about.name, off, weight: 0.0 }, aicc))
     };
     let mut others: Vec<(Other, f64)> = pairs.into_iter().filter_map(other).collect();
     let least = others.iter().fold(aicc, |least, (_, own)| least.min(*own));
@@ -112,12 +117,12 @@ pub(super) fn widen(diagnosis: &mut Diagnosis, others: &[Other], level: f64) {
     diagnosis.confounders.sort_by(|a, b| b.worst().total_cmp(&a.worst()));
 }
 
-fn with_other(model: &Model, added: Option<&str>, effect: &str) -> Option<Model> {
+fn with_other(model: &Model, added: Option<&str>, entry: &'static Entry) -> Option<Model> {
     let mut with_other = Model::new(model.robot());
     for part in model.parts().iter().filter(|part| Some(part.effect.name()) != added) {
         with_other.adopt(part);
     }
-    with_other.add(effect).ok()?.free = true;
+    with_other.add_entry(entry).ok()?.free = true;
     Some(with_other)
 }
 

@@ -65,6 +65,7 @@ fn possible(projected: &Projected, products: &DMatrix<f64>, column: usize, usual
 mod tests {
     use super::super::tests::{complete, fitted};
     use super::*;
+    use crate::diagnose::Verdict;
     use crate::diagnose::confounder::sentence;
     use crate::evidence::tracks::estimates;
 
@@ -89,16 +90,20 @@ mod tests {
         let fitted = estimates(&complete().fitted);
         let wide: Vec<Estimate> = fitted.iter().map(|own| Estimate { standard_error: 1.0, ..own.clone() }).collect();
         assert_eq!(confounders(complete(), &wide, 0.95), []);
-        assert_eq!(sentence(&[]), None);
+        assert_eq!(sentence(&[], Verdict::Explained), None);
         let bias = |parameter, bias| Bias { effect: "scale", parameter, bias, half_width: 0.001 };
         let own = |effect, biases: Vec<Bias>| Confounder { effect, parameter: "s_per_m", size: 0.0149, biases };
-        let told = sentence(&[
+        let both = [
             own("speed_slip_left", vec![bias("e_s", 0.002)]),
             own("speed_slip", vec![bias("e_s", 0.004), bias("e_b", 0.003)]),
-        ])
-        .unwrap();
+        ];
+        let told = sentence(&both, Verdict::Explained).unwrap();
         let expected = "would move e_s of scale by 0.0040 (speed_slip of 0.015 s/m), e_b of scale by 0.0030 (speed_slip of 0.015 s/m). \
                         What would show speed_slip: one straight leg at each of two speeds, measured by tape.";
+        assert!(told.ends_with(expected), "{told}");
+        assert!(told.starts_with("The intervals hold if the model lacks no effect."), "{told}");
+        let told = sentence(&both, Verdict::UnlistedEffect).unwrap();
+        assert!(told.starts_with("The intervals do not allow for what the model does not explain."), "{told}");
         assert!(told.ends_with(expected), "{told}");
     }
 }
