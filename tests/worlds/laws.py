@@ -28,6 +28,12 @@ def wheel_travel(
     if laws.forward_slip_s_m:
         way = travel.mean(axis=0)
         travel = travel - laws.forward_slip_s_m * np.abs(way) / step_s * way
+    if laws.squared_slip_s2_m2:
+        speed = travel / step_s
+        travel = travel * (1 - laws.squared_slip_s2_m2 * speed**2)
+    if laws.squared_forward_slip_s2_m2:
+        way = travel.mean(axis=0)
+        travel = travel - laws.squared_forward_slip_s2_m2 * (way / step_s) ** 2 * way
     if laws.eccentricity_left_m or laws.eccentricity_right_m:
         amplitude = np.array([laws.eccentricity_left_m, laws.eccentricity_right_m])
         amplitude = amplitude.reshape(-1, *[1] * (rolled.ndim - 1))

@@ -323,7 +323,7 @@ def once_a_turn(said: Said, setting: Setting) -> bool:
 def same_effects(setting: Setting) -> set[str]:
     """Effects of the catalogue that are the law itself."""
     laws = setting.laws
-    same = set(words.SAME_AS_LAW.get(laws.law_kind, set()))
+    same = set(words.SAME_AS_LAW.get((laws.law_kind, laws.law_acts_on), set()))
     squares = setting.drive.kind == "squares" and setting.recording.start == "origin"
     third = laws.law_kind == "heading_wave" and laws.law_order == 3
     if third and squares and laws.law_acts_on == "yaw":

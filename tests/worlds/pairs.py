@@ -18,10 +18,12 @@ from plans import Random
 from record import stream
 from study import ROOT
 
-CHANGES = ("nothing", "wheel", "wheelbase", "noise")
+CHANGES = ("nothing", "wheel", "wheelbase", "noise", "start")
 """What a pair may differ by."""
 WHEEL, WHEELBASE, NOISE = 0.998, 1.01, 3.0
 """Factors of the right wheel, the wheelbase, and the noise of both wheels."""
+START_M = (0.05, -0.03)
+"""Where START is by the tape of the second test."""
 PIECE_M = 0.02
 
 
@@ -97,6 +99,12 @@ def measured(robot: Robot, test: Test, random: Random) -> list[Returned]:
     return rows
 
 
+def from_elsewhere(rows: list[Returned]) -> list[Returned]:
+    """The same returns measured from a START that lies elsewhere."""
+    along, left = START_M
+    return [(direction, run, x + along, y + left, turned) for direction, run, x, y, turned in rows]
+
+
 def write(folder: File, robot: Robot, test: Test, rows: list[Returned]) -> None:
     """A dataset of return poses."""
     folder.mkdir(parents=True)
@@ -118,7 +126,10 @@ def said(what: str, seed: int, binary: File) -> dict[str, Any]:
     with TemporaryDirectory() as place:
         folders = [File(place) / name for name in ("before", "after")]
         for folder, own in zip(folders, (robot, changed(robot, what)), strict=True):
-            write(folder, own, test, measured(own, test, random))
+            rows = measured(own, test, random)
+            if what == "start" and folder.name == "after":
+                rows = from_elsewhere(rows)
+            write(folder, own, test, rows)
         words = [str(binary), "changed", *map(str, folders), "--json"]
         answer = subprocess.run(words, capture_output=True, text=True, timeout=300)
     if not answer.stdout:
@@ -147,6 +158,7 @@ def main(words: list[str]) -> None:
             count += bool(found["changed"])
             named.update(one["key"] for one in found["robot"] if one["changed"])
             named.update(one["key"] for one in found["alone"])
+            named["start"] += found["start"] is not None
         print(f"{what}: {count} of {chosen.sets - failed} changed; {dict(named)}", flush=True)
 
 

@@ -213,6 +213,10 @@ class Laws:
     """Both wheels lose this share of their travel per m/s of the speed between them."""
     forward_slip_s_m: float = 0.0
     """The way between them loses this share per m/s of its speed; no turn does."""
+    squared_slip_s2_m2: float = 0.0
+    """Each wheel loses this share of its travel at 1 m/s, and by the square of its speed."""
+    squared_forward_slip_s2_m2: float = 0.0
+    """The way between them loses this share at 1 m/s, by the square of its speed; no turn does."""
     eccentricity_left_m: float = 0.0
     eccentricity_right_m: float = 0.0
     """The radius of a wheel changes by this as it turns."""

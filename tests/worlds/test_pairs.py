@@ -1,7 +1,7 @@
 """What changed between two tests by tape; `pairs.py` runs it on many."""
 
 import pytest
-from pairs import changed, drawn, driven, said
+from pairs import START_M, changed, drawn, driven, said
 from record import stream
 from test_gyro import COMMAND, needs_command
 
@@ -30,3 +30,13 @@ def test_what_changed_is_said_and_where_nothing_did_hardly_ever() -> None:
         wheel = said("wheel", seed, COMMAND)
         assert wheel["changed"]
         assert any("wheel" in one["key"] for one in wheel["robot"])
+
+
+@needs_command
+def test_a_start_that_lies_elsewhere_is_named_where_it_looks_like_other_wheels() -> None:
+    for seed in range(1, 4):
+        found = said("start", seed, COMMAND)
+        assert found["changed"]
+        assert found["start"]["x_m"] == pytest.approx(START_M[0], abs=0.03)
+        assert found["start"]["y_m"] == pytest.approx(START_M[1], abs=0.03)
+        assert said("wheelbase", seed, COMMAND)["start"] is None

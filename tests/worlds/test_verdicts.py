@@ -113,9 +113,11 @@ def test_runs_whose_poses_have_clocks_of_their_own_are_laid_on_them() -> None:
     [
         ("body_slip", "body_slip_s_m=0.06", "body_speed_slip"),
         ("forward_slip", "forward_slip_s_m=0.06", "forward_slip"),
+        ("null", "squared_slip_s2_m2=0.15", "squared_speed_slip"),
+        ("null", "squared_forward_slip_s2_m2=0.15", "squared_forward_slip"),
     ],
 )
-def test_slip_by_the_speed_of_the_body_is_told_from_that_of_each_wheel(
+def test_slip_is_told_by_whose_speed_it_grows_and_by_its_power(
     world: str, size: str, effect: str
 ) -> None:
     said = found(world, 2, size, "run_s=60")

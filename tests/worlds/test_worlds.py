@@ -290,6 +290,17 @@ def test_both_wheels_slip_by_the_speed_between_them_or_lose_way_alone() -> None:
     np.testing.assert_allclose(travel[:, 0], np.array([0.005, 0.006]) - 0.1 * 0.55 * 0.0055)
 
 
+def test_slip_by_the_square_of_the_speed_takes_its_share_of_each_wheel_or_of_the_way() -> None:
+    rolled, still = np.full((2, 1), 0.1), np.zeros((2, 1))
+    radii = np.array([[0.05], [0.06]])
+    travel = wheel_travel(Laws(squared_slip_s2_m2=0.1), rolled, still, radii, 0.01)
+    shares = np.array([1 - 0.1 * 0.25, 1 - 0.1 * 0.36])
+    np.testing.assert_allclose(travel[:, 0], np.array([0.005, 0.006]) * shares)
+    travel = wheel_travel(Laws(squared_forward_slip_s2_m2=0.1), rolled, still, radii, 0.01)
+    lost = 0.1 * 0.55**2 * 0.0055
+    np.testing.assert_allclose(travel[:, 0], np.array([0.005, 0.006]) - lost)
+
+
 def test_a_wheel_that_is_not_round_is_right_after_each_turn() -> None:
     angle = (np.arange(1000) + 0.5) * 2 * pi / 1000
     rolled = np.full((2, 1000), 2 * pi / 1000)

@@ -44,18 +44,25 @@ LAWS: dict[str, tuple[set[str], str]] = {
     "slip_s_m": ({"speed_slip", "speed_slip_left", "speed_slip_right"}, "speed"),
     "body_slip_s_m": ({"body_speed_slip"}, "speed"),
     "forward_slip_s_m": ({"forward_slip"}, "speed"),
+    "squared_slip_s2_m2": ({"squared_speed_slip"}, "speed"),
+    "squared_forward_slip_s2_m2": ({"squared_forward_slip"}, "speed"),
     "eccentricity_left_m": ({"wheel_eccentricity_left"}, "wheel_angle_left"),
     "eccentricity_right_m": ({"wheel_eccentricity_right"}, "wheel_angle_right"),
     "wave_rad_s": (set(), "time"),
     "scrub_s_rad": ({"turn_slip", "turn_slip_rate"}, "turn_rate"),
 }
 """Effects, and the variable of a formula, that are right where the number is not zero."""
-SAME_AS_LAW: dict[str, set[str]] = {"turn_rate_squared": {"turn_slip_rate"}}
-"""Effects of the catalogue that are a law of `laws.SHAPES` itself, in other words: they name it.
+SAME_AS_LAW: dict[tuple[str, str], set[str]] = {
+    ("turn_rate_squared", "yaw"): {"turn_slip_rate"},
+    ("speed_squared", "forward"): {"squared_forward_slip"},
+}
+"""Effects of the catalogue that are a law of `laws.SHAPES` itself, in other words: they name it, by
+the kind of the law and what it acts on.
 
 `missed_counts` loses in proportion to the speed beyond a threshold, and no fixed share there;
 `diameter_drift` grows with the way, and not with the time; `wheel_eccentricity` is a sine, and no
-pulse; `speed_slip` is linear; `centripetal_load` acts on the wheels, and not sideways.
+pulse; `speed_slip` is linear; `squared_speed_slip` acts on each wheel, and not on the way ahead;
+`centripetal_load` acts on the wheels, and not sideways.
 """
 FIRST_HARMONIC = {"floor_slope_yaw"}
 """Where all headings are multiples of a right angle, a third harmonic of it is a first one."""

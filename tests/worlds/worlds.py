@@ -244,6 +244,12 @@ def forward_slip(_: Setting, random: Random) -> Changes:
     return {"forward_slip_s_m": log_uniform(random, 0.005, 0.1)}
 
 
+def squared_slip(_: Setting, random: Random) -> Changes:
+    """Wheels lose travel, or the robot way, by the square of the speed."""
+    name = ["squared_slip_s2_m2", "squared_forward_slip_s2_m2"][int(random.integers(2))]
+    return {name: log_uniform(random, 0.01, 0.2)}
+
+
 def once_a_turn(setting: Setting, random: Random) -> Changes:
     """One or both wheels are not round."""
     size = setting.robot.nominal_radius_m * log_uniform(random, 0.003, 0.03)
@@ -382,6 +388,7 @@ WORLDS = {
         World("slip", "law: wheels lose travel in proportion to speed", slip),
         World("body_slip", "law: both wheels lose by the speed of the robot", body_slip),
         World("forward_slip", "law: way is lost by the speed of the robot", forward_slip),
+        World("squared_slip", "law: slip by the square of the speed", squared_slip),
         World("once_a_turn", "law: wheels that are not round", once_a_turn),
         World("time_wave", "law: yaw rate is a sine of time", time_wave),
         World("load", "law: fast turns on the spot lose more", load),

@@ -160,3 +160,15 @@ fn exports_are_written_whole_and_never_over_another_file() {
 fn golden(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name)
 }
+
+#[test]
+fn runs_that_repeat_to_the_last_digit_have_no_scatter_and_no_nan() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(data().join("tape/robot.toml"), folder.path().join("robot.toml")).unwrap();
+    let row = |direction: &str, run: usize| format!("{direction},{run},0.1,0.02");
+    let rows: Vec<String> = ["cw", "ccw"].iter().flat_map(|side| (1..6).map(move |run| row(side, run))).collect();
+    let sheet = format!("direction,run,ex_m,ey_m\n{}\n", rows.join("\n"));
+    std::fs::write(folder.path().join("returns.csv"), sheet).unwrap();
+    let (text, _) = said(folder.path(), &["score", "."]);
+    assert!(text.contains("sigma, radial [mm]") && !text.contains("NaN"), "{text}");
+}

@@ -161,4 +161,7 @@ fn one_direction_is_not_enough_and_the_next_step_is_said() {
     let found = document(folder.path(), &["solve", ".", "--check"]);
     assert_eq!((&found["verdict"], &found["correction"]), (&"not_enough_data".into(), &serde_json::json!({})));
     assert!(found["next"][0].as_str().unwrap().contains("three runs in each direction"), "{found}");
+    // Runs that test nothing are no reason for a job to pass.
+    let run = |arguments: &[&str]| umbmark(folder.path(), arguments).status.code();
+    assert_eq!([run(&["diagnose", ".", "--check"]), run(&["diagnose", "."])], [Some(1), Some(0)]);
 }

@@ -16,6 +16,7 @@ mod alone;
 mod model;
 mod quantities;
 mod scatter;
+mod start;
 mod words;
 
 #[cfg(test)]
@@ -34,6 +35,7 @@ use crate::watch::Watch;
 pub use alone::Alone;
 pub(crate) use model::is_of_test;
 pub use quantities::{Of, Quantity};
+pub use start::StartMoved;
 
 /// A change as large as this share of tests would have found is told as what could be seen.
 pub const POWER: f64 = 0.8;
@@ -122,6 +124,8 @@ pub struct Changed {
     pub reference: Vec<Moved>,
     /// Where return poses show ratios only, and these changed: each length that accounts for it by itself.
     pub alone: Vec<Alone>,
+    /// Where START lies elsewhere in the second test, if that accounts for the change of the return poses, too.
+    pub start: Option<StartMoved>,
     /// Effects that one of the tests does not show, or with which it cannot be fitted; they are taken to be in it as in the other.
     pub assumed: Vec<&'static str>,
     /// Error of the second test with the robot's numbers of before, and with those of after \[m\]; `None` where it is not known.
@@ -215,7 +219,7 @@ impl<'a> Learned<'a> {
             table.extend(Moved::of(quantity, before, after, options.size));
         }
         robot.extend(scatter::of(&tests, &fits, options.size));
-        if robot.is_empty() {
+        if robot.iter().all(|moved| moved.quantity.of == Of::Scatter) {
             return Err(ChangeError::NothingInCommon);
         }
         [&mut robot, &mut reference].into_iter().for_each(|table| adjust(table, options.size));
@@ -226,6 +230,8 @@ impl<'a> Learned<'a> {
         });
         let is_moved = |moved: &Moved| moved.quantity.of == Of::Robot && moved.is_shown(options.size);
         let alone = if robot.iter().any(is_moved) { alone::of(&fits, options.size) } else { Vec::new() };
+        let is_changed = robot.iter().any(|moved| moved.quantity.of != Of::Scatter && moved.is_shown(options.size));
+        let start = if is_changed { start::of(&tests, options.size) } else { None };
         let [of_before, of_after] = fits;
         let test = |test: &Learned, fit: evidence::Fit| Test {
             verdict: test.verdict,
@@ -234,7 +240,7 @@ impl<'a> Learned<'a> {
             fit,
         };
         let (before, after) = (test(before, of_before), test(after, of_after));
-        Ok(Changed { before, after, robot, reference, alone, assumed, costs, size: options.size })
+        Ok(Changed { before, after, robot, reference, alone, start, assumed, costs, size: options.size })
     }
 }
 

@@ -24,6 +24,7 @@ use crate::drive::Robot;
 use crate::effect::{Model, ModelError, find};
 use crate::evidence::{AnyEvidence, Ends, FitError, Level, robot_of};
 
+pub(crate) use candidates::missing;
 pub use candidates::{Candidate, Size, candidates, columns};
 pub use confounder::{Bias, Confounder};
 pub use diagnosis::{Diagnosis, GoodnessOfFit, Verdict};

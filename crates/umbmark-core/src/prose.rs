@@ -13,6 +13,22 @@ pub fn counted(count: usize, noun: &str) -> String {
     format!("{count} {}", of(count, noun))
 }
 
+/// "a", "a and b", "a, b and c".
+///
+/// ```
+/// use umbmark_core::prose::listed;
+/// assert_eq!(listed(&["wheelbase"]), "wheelbase");
+/// assert_eq!(listed(&["E_d", "E_b", "E_s"]), "E_d, E_b and E_s");
+/// ```
+pub fn listed<S: AsRef<str>>(words: &[S]) -> String {
+    let words: Vec<&str> = words.iter().map(S::as_ref).collect();
+    match words.as_slice() {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
+    }
+}
+
 /// The word for one thing or for several of them, as their number asks for.
 pub fn of(count: usize, noun: &str) -> String {
     let vowel_before_y = ["ay", "ey", "oy", "uy"].iter().any(|end| noun.ends_with(end));

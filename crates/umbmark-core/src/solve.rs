@@ -52,6 +52,9 @@ pub struct Solution {
     pub needed: bool,
     /// How far off the robot is, and what of it is what; `None` where nothing is known of the robot yet.
     pub off: Option<Off>,
+    /// The largest error that one number of the robot leaves at an end of its interval, the others as they are \[m\]: so large an error of the
+    /// numbers these runs do not see.
+    pub unseen: Option<f64>,
     /// First effects of the robot's drive that these runs do not show; the numbers are as if these did nothing.
     pub not_shown: Vec<&'static str>,
 }
@@ -120,18 +123,21 @@ impl Solution {
                 changes: Vec::new(),
                 needed: false,
                 off: None,
+                unseen: None,
                 not_shown,
             });
         }
         let evidence = AnyEvidence::of(data, options.level(data))?;
-        let off = Meter::new(data, &evidence).map(|meter| Off::of(&meter, &learnt));
+        let meter = Meter::new(data, &evidence);
+        let off = meter.as_ref().map(|meter| Off::of(meter, &learnt));
         let others = if learnt.partial { Vec::new() } else { others::of(&evidence, &learnt, options.size) };
         others::widen(&mut learnt.diagnosis, &others, 1.0 - options.size);
         let (mut changes, needed) = numbers::of(&learnt, options.size);
         if let Some(off) = &off {
             numbers::share(&mut changes, off, &learnt.model);
         }
-        Ok(Solution { learnt, others, changes, needed, off, not_shown })
+        let unseen = meter.map(|meter| off::at_ends_of_intervals(&meter, &learnt, 1.0 - options.size));
+        Ok(Solution { learnt, others, changes, needed, off, unseen, not_shown })
     }
 
     /// A number of the robot, by its key in robot.toml.
@@ -194,6 +200,12 @@ impl Solution {
     fn travels(&self, part: &Part) -> bool {
         let law = self.learnt.model.parts().iter().find(|own| own.effect.name() == part.name);
         law.and_then(|own| own.effect.entry()).is_none_or(|entry| !entry.is_of_floor)
+    }
+
+    /// Whether these runs would have shown numbers that make the error that there is, or more than chance makes.
+    pub fn tells_numbers(&self) -> bool {
+        let Some((off, unseen)) = self.off.as_ref().zip(self.unseen) else { return false };
+        unseen <= off.driven.max(off.chance.unwrap_or(0.0))
     }
 
     /// Why the model, or its numbers alone, should not be used; `None` where nothing speaks against it.

@@ -27,6 +27,8 @@ pub(super) struct Row<'r> {
 pub(super) struct Sheet<'a> {
     /// Names of the columns, in lower case.
     pub header: Vec<String>,
+    /// Cells of the line with the names, those without a name among them.
+    width: usize,
     pub header_line: usize,
     rows: Rows<'a>,
 }
@@ -111,11 +113,14 @@ impl<'r> Row<'r> {
         (0..cells.len()).filter_map(|place| cells.range(place)).map(|range| tidy(&text[range]))
     }
 
-    /// Refuses a row with more or fewer cells than there are columns; empty ones after the last do no harm.
+    /// Refuses a row with more or fewer cells than there are columns. Empty ones after the last do no harm, up to so many cells; more of them,
+    /// where no cell has a decimal point, are what decimal commas leave of rows whose last cells are empty.
     #[inline]
-    fn check_width(&self, expected: usize) -> Result<(), DatasetError> {
+    fn check_width(&self, expected: usize, most: usize) -> Result<(), DatasetError> {
         let got = self.cells.len();
-        if got == expected || got > expected && self.cells().skip(expected).all(str::is_empty) {
+        let has_points = || self.cells().any(|cell| cell.contains('.'));
+        let is_surplus_empty = || self.cells().skip(expected).all(str::is_empty) && (got <= most || has_points());
+        if got == expected || got > expected && is_surplus_empty() {
             return Ok(());
         }
         if got == 1 {
@@ -158,14 +163,15 @@ impl<'a> Sheet<'a> {
             return Err(At::new(row.file, row.line).refuse(LineProblem::NoHeader { value: quoted(first) }));
         }
         let (mut header, line): (Vec<String>, _) = (row.cells().map(str::to_lowercase).collect(), row.line);
+        let width = header.len();
         header.truncate(header.iter().rposition(|name| !name.is_empty()).map_or(0, |last| last + 1));
         rows.reader.get_ref().columns.rename(&mut header);
-        Ok(Sheet { header, header_line: line, rows })
+        Ok(Sheet { header, width, header_line: line, rows })
     }
 
     /// Takes every row as data, of a number of columns.
     pub fn headless(source: Source<'a>, columns: usize) -> Sheet<'a> {
-        Sheet { header: vec![String::new(); columns], header_line: 0, rows: Rows::of(source) }
+        Sheet { header: vec![String::new(); columns], width: columns, header_line: 0, rows: Rows::of(source) }
     }
 
     pub fn file(&self) -> &str {
@@ -174,13 +180,15 @@ impl<'a> Sheet<'a> {
 
     /// Visits every row; there must be one.
     pub fn for_each(mut self, mut visit: impl FnMut(&Row) -> Result<(), DatasetError>) -> Result<(), DatasetError> {
-        let mut any = false;
+        let columns = self.header.len();
+        let mut most = None;
         while let Some(row) = self.rows.next_below(&self.header)? {
-            row.check_width(self.header.len())?;
+            // A comma at the end of a row stands at the end of every row.
+            let most = *most.get_or_insert(self.width + usize::from(row.cells.len() == self.width + 1));
+            row.check_width(columns, most)?;
             visit(&row)?;
-            any = true;
         }
-        if any {
+        if most.is_some() {
             return Ok(());
         }
         let (file, found) = (self.file().to_owned(), "there are no rows");

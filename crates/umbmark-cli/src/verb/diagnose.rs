@@ -58,8 +58,13 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         let text = text(&data, &diagnosis, &options, look);
         write!(session.out(), "{text}")?;
     }
-    let missing = !matches!(diagnosis.verdict, Verdict::Explained | Verdict::NotEnoughData);
-    Ok(if arguments.check && missing { ExitCode::from(3) } else { ExitCode::SUCCESS })
+    Ok(match diagnosis.verdict {
+        Verdict::Explained => ExitCode::SUCCESS,
+        _ if !arguments.check => ExitCode::SUCCESS,
+        // Runs that test nothing are no reason to pass.
+        Verdict::NotEnoughData => ExitCode::FAILURE,
+        _ => ExitCode::from(3),
+    })
 }
 
 /// A verdict in a sentence.

@@ -109,7 +109,7 @@ fn rows(score: &Score, convention: Convention) -> Vec<Vec<String>> {
     if let (Some(axis), Some(radial)) = (summary.sigma_axis(), summary.sigma_radial()) {
         let interval = intervals.map(|i| i.sigma_axis);
         rows.push(row("sigma, per axis [mm]", axis, interval, MM, 1));
-        rows.push(row("sigma, radial [mm]", radial, interval.map(|i| i.scaled(radial / axis)), MM, 1));
+        rows.push(row("sigma, radial [mm]", radial, interval.map(|i| i.scaled(std::f64::consts::SQRT_2)), MM, 1));
     }
     for (name, cluster, interval) in
         [("cw", summary.cw, intervals.and_then(|i| i.cw)), ("ccw", summary.ccw, intervals.and_then(|i| i.ccw))]

@@ -2,15 +2,18 @@
 
 use super::closed_form::{ClosedForm, RadiusWheelbase};
 use super::estimate::{Estimate, Method};
+use super::{Correction, drive_again};
 use crate::dataset::ReturnError;
 use crate::drive::Robot;
-use crate::path::{Path, SQUARE};
-use crate::score::{Scatter, Summary, summarise};
-use nalgebra::{Matrix2, Matrix3};
+use crate::path::{Direction, Path, SQUARE};
+use crate::prose::listed;
+use crate::score::{Cluster, Scatter, Summary, summarise};
+use nalgebra::{Matrix2, Matrix3, Vector2};
 
 /// A square driven both ways, for the closed forms.
 pub(super) struct Square<'a> {
     robot: &'a Robot,
+    path: &'a Path,
     side: f64,
     summary: Summary,
     scatter: Option<Scatter>,
@@ -18,7 +21,7 @@ pub(super) struct Square<'a> {
 
 impl<'a> Square<'a> {
     pub fn new(
-        path: Option<&Path>,
+        path: Option<&'a Path>,
         robot: &'a Robot,
         cw: &[ReturnError],
         ccw: &[ReturnError],
@@ -34,7 +37,13 @@ impl<'a> Square<'a> {
             }
             Some(path) => {
                 let summary = summarise(cw, ccw);
-                return Some(Square { robot, side: path.values()[0], summary, scatter: Scatter::pooled(cw, ccw) });
+                return Some(Square {
+                    robot,
+                    path,
+                    side: path.values()[0],
+                    summary,
+                    scatter: Scatter::pooled(cw, ccw),
+                });
             }
         };
         warnings.push(format!("No closed forms: {refused}."));
@@ -43,7 +52,8 @@ impl<'a> Square<'a> {
 
     pub fn estimates(&self, wheelbase: RadiusWheelbase, warnings: &mut Vec<String>) -> Vec<Estimate> {
         let (Some(cw), Some(ccw)) = (self.summary.cw, self.summary.ccw) else { return Vec::new() };
-        let estimate = |form: ClosedForm| {
+        let mut coarse = Vec::new();
+        let mut estimate = |form: ClosedForm| {
             let name = Method::ClosedForm(form).name();
             let Some(angles) = form.angles(&cw, &ccw, self.side) else {
                 warnings.push(format!("No {name}: return headings were not measured in both directions."));
@@ -61,12 +71,37 @@ impl<'a> Square<'a> {
             let covariance = scatter.map(|scatter| {
                 let by_angles = angles.correction_jacobian(self.side, &self.robot.drive, wheelbase);
                 let of_angles = form.covariance(&scatter, cw.n, ccw.n, self.side);
-                widen(by_angles * of_angles * by_angles.transpose())
+                by_angles * of_angles * by_angles.transpose()
             });
+            if let Some((covariance, bias)) = covariance.zip(self.bias(form, &correction, wheelbase))
+                && bias.iter().zip(covariance.diagonal().iter()).any(|(bias, variance)| bias * bias > *variance)
+            {
+                coarse.push(name);
+            }
+            let covariance = covariance.map(widen);
             let freedom = scatter.map_or(0.0, |s| s.degrees_of_freedom as f64);
             Some(Estimate { covariance, ..Estimate::new(Method::ClosedForm(form), correction, freedom) })
         };
-        ClosedForm::ALL.into_iter().filter_map(estimate).collect()
+        let estimates = ClosedForm::ALL.into_iter().filter_map(&mut estimate).collect();
+        if !coarse.is_empty() {
+            warnings.push(format!(
+                "Of first order in the errors, {} would be off by more than a standard error on exact returns of the robot that is told: the \
+                 interval leaves that out. Use the exact fit.",
+                listed(&coarse)
+            ));
+        }
+        estimates
+    }
+
+    /// What a closed form makes of the exact return errors of a robot with its own E_d and E_b, less these: its equations are of first order.
+    fn bias(&self, form: ClosedForm, own: &Correction, wheelbase: RadiusWheelbase) -> Option<Vector2<f64>> {
+        let exact = |direction| {
+            let error = drive_again(self.robot, self.path, direction, own, &Correction::NONE)?;
+            Cluster::of(&[error])
+        };
+        let angles = form.angles(&exact(Direction::Cw)?, &exact(Direction::Ccw)?, self.side)?;
+        let told = angles.correction(self.side, &self.robot.drive, wheelbase)?;
+        Some(Vector2::new(told.e_d - own.e_d, told.e_b - own.e_b))
     }
 }
 

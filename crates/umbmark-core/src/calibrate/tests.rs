@@ -361,6 +361,23 @@ fn calibrated(errors: &[(Direction, ReturnError)]) -> Calibration {
     calibrate(&dataset(&Robot::labmate(), &Path::umbmark(), errors), &Options::default()).unwrap()
 }
 
+/// What the closed forms leave out does not shrink with the scatter of the runs: of a robot that repeats well it is more than a standard error.
+#[test]
+fn closed_forms_are_warned_of_where_what_they_leave_out_is_beyond_their_intervals() {
+    let warned = |scale: f64| {
+        let truth = Correction { e_d: 1.001, e_b: 0.985, e_s: 1.0 };
+        let exact = drive_back(&truth, &Correction::NONE);
+        let scatter = [(9e-3, 8e-3, 2e-3), (-4e-3, -6e-3, -3e-3), (-5e-3, -2e-3, 1e-3)];
+        let runs = Direction::BOTH.into_iter().zip(exact).flat_map(|(d, e)| {
+            scatter.map(|(x, y, h)| (d, moved(&e, (scale * x, scale * d.sign() * y, scale * d.sign() * h))))
+        });
+        let told = calibrated(&runs.collect::<Vec<_>>()).warnings;
+        told.into_iter().find(|warning| warning.starts_with("Of first order in the errors,"))
+    };
+    assert!(warned(0.1).unwrap().contains("closed_form_y"));
+    assert_eq!(warned(10.0), None);
+}
+
 /// Oracle: derivatives of the estimate by each run's return error, from calibrating again, with the scatter of the runs.
 #[test]
 fn the_covariance_of_every_method_is_that_of_its_influence_on_each_run() {

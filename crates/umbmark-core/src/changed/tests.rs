@@ -97,6 +97,37 @@ fn return_poses_name_the_length_that_accounts_for_the_change() {
     assert_eq!((moved(&base).as_slice(), base.alone[0].key), (&["wheelbase_over_diameter"][..], "wheelbase_m"));
 }
 
+/// A START that lies elsewhere looks like other wheels; what the wheels do does not look like START, because it differs with the direction.
+#[test]
+fn a_start_that_lies_elsewhere_is_named_beside_what_it_looks_like() {
+    let mut after = returns(&[], 2);
+    for run in &mut after.runs {
+        let error = run.returned.as_mut().unwrap();
+        (error.x, error.y) = (error.x + 0.05, error.y - 0.03);
+    }
+    let found = between(&returns(&[], 1), &after).unwrap();
+    assert!(found.is_changed());
+    let start = found.start.unwrap();
+    assert!((start.x - 0.05).abs() < 0.01 && (start.y + 0.03).abs() < 0.01, "{start:?}");
+    assert!(
+        found.sentence().contains("A START that lies elsewhere accounts for it, too: by +"),
+        "{}",
+        found.sentence()
+    );
+    for worn in [returns(&wheels(1.0, 0.997), 2), returns(&[("wheelbase", "e_b", 1.02)], 2)] {
+        let found = between(&returns(&[], 1), &worn).unwrap();
+        assert_eq!((found.is_changed(), found.start), (true, None));
+    }
+}
+
+/// Clockwise runs alone show neither ratio.
+#[test]
+fn tests_without_a_number_in_common_are_refused() {
+    let mut after = returns(&[], 2);
+    after.runs.retain(|run| run.direction == Some(crate::path::Direction::Ccw));
+    assert_eq!(between(&returns(&[], 1), &after).unwrap_err(), ChangeError::NothingInCommon);
+}
+
 #[test]
 fn robots_that_did_not_change_are_rarely_accused() {
     let truth = [("wheelbase", "e_b", 0.99), ("wheel_diameter_ratio", "e_d", 1.003)];

@@ -1,7 +1,7 @@
 //! What changed, in words.
 
 use super::quantities::Of;
-use super::{Changed, Moved};
+use super::{Changed, Moved, StartMoved};
 
 /// Lengths are told in millimetres, and changes of ratios in per cent.
 pub(super) fn sentence(changed: &Changed) -> String {
@@ -14,6 +14,7 @@ pub(super) fn sentence(changed: &Changed) -> String {
     let moved: Vec<&Moved> = changed.moved().collect();
     said.extend(moved.iter().map(|moved| of(moved)));
     said.extend(by_itself(changed));
+    said.extend(changed.start.as_ref().map(by_start));
     let still: Vec<&Moved> = changed.robot.iter().filter(|moved| !moved.is_shown(changed.size)).collect();
     let rest = if moved.is_empty() { "These tests show no change" } else { "No change is shown" };
     if !still.is_empty() {
@@ -61,6 +62,17 @@ fn by_itself(changed: &Changed) -> Option<String> {
         [one] => Some(format!("One length accounts for it: {one}.")),
         several => Some(format!("Each of these accounts for it: {}.", several.join("; or "))),
     }
+}
+
+/// That START may be what moved.
+fn by_start(start: &StartMoved) -> String {
+    let turned = start.heading.map_or(String::new(), |turned| format!(", turned by {:+.2} deg", turned.to_degrees()));
+    format!(
+        "A START that lies elsewhere accounts for it, too: by {:+.1} mm along the first leg and {:+.1} mm to its left{turned}. Measure where it \
+         is before any number is changed.",
+        1e3 * start.x,
+        1e3 * start.y
+    )
 }
 
 /// What a number is called; of the robot's own, without an article.

@@ -53,6 +53,19 @@ pub struct Alone {
     pub p: f64,
 }
 
+/// Where START lies elsewhere in the second test.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct StartMoved {
+    /// Along the first leg, in m.
+    pub x_m: f64,
+    /// To its left, in m.
+    pub y_m: f64,
+    /// Counter-clockwise, in rad; null where the returns have no headings.
+    pub heading_rad: Option<f64>,
+    /// p of what it leaves of the change.
+    pub p: f64,
+}
+
 /// What one of the two tests says by itself.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct TestBeside {
@@ -81,6 +94,8 @@ pub struct Changed {
     pub reference: Vec<Moved>,
     /// Where return poses show ratios only, and these changed: each length that accounts for it by itself.
     pub alone: Vec<Alone>,
+    /// Where START lies elsewhere in the second test, if that accounts for the change of the return poses, too; else null.
+    pub start: Option<StartMoved>,
     /// Effects that one of the tests does not show, or with which it cannot be fitted; they are taken to be in it as in the other.
     pub assumed: Vec<&'static str>,
     /// Error of the second test with the robot's numbers of before, in m; null where it is not known.
@@ -120,6 +135,7 @@ impl Changed {
             robot: table(&found.robot),
             reference: table(&found.reference),
             alone: found.alone.iter().map(Alone::from).collect(),
+            start: found.start.as_ref().map(StartMoved::from),
             assumed: found.assumed.clone(),
             with_before_m: found.costs.and_then(|[old, _]| finite(old)),
             with_after_m: found.costs.and_then(|[_, new]| finite(new)),
@@ -131,6 +147,13 @@ impl Changed {
             seed: options.seed,
             version: crate::VERSION,
         }
+    }
+}
+
+impl From<&changed::StartMoved> for StartMoved {
+    fn from(start: &changed::StartMoved) -> Self {
+        let &changed::StartMoved { x, y, heading, p } = start;
+        StartMoved { x_m: x, y_m: y, heading_rad: heading, p }
     }
 }
 

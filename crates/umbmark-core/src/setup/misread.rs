@@ -102,8 +102,8 @@ impl Written {
     fn words(self) -> String {
         let of = |side: Option<Direction>| side.map_or(String::new(), |side| format!(" of the {} runs", side.name()));
         match self {
-            Written::DirectionsExchanged => "cw and ccw are exchanged, or y is counted to the right and headings clockwise (exchange the directions, or \
-                                             change the signs)"
+            Written::DirectionsExchanged => "cw and ccw are exchanged, or y is counted to the right and headings clockwise, or x is counted backward (exchange the \
+                                             directions, or change the signs)"
                 .into(),
             Written::AxesExchanged => "x and y are exchanged (x points along the first leg, y to the left)".into(),
             Written::SignsReversed => {

@@ -3,7 +3,7 @@
 use crate::compare::tracks::error_along;
 use crate::dataset::{Dataset, ReturnError};
 use crate::effect::{ActsOn, Model};
-use crate::evidence::{AnyEvidence, Ends};
+use crate::evidence::{AnyEvidence, Ends, Estimate};
 use crate::learn::Learnt;
 use crate::likelihood::Observed;
 use crate::path::Direction;
@@ -114,6 +114,22 @@ impl Off {
     pub fn is_chance(&self, error: f64) -> bool {
         self.chance.is_some_and(|chance| error <= chance)
     }
+}
+
+/// The largest error \[m\] of a learnt model with one number of the robot at an end of its interval; infinite where one has none.
+pub(super) fn at_ends_of_intervals(meter: &Meter, learnt: &Learnt, level: f64) -> f64 {
+    let model = &learnt.model;
+    let first = model.robot().drive.first_effects();
+    let of_robot = learnt.diagnosis.fitted.iter().filter(|own| first.contains(&own.effect));
+    let at_ends = |own: &Estimate| {
+        let Some(interval) = own.interval(level) else { return f64::INFINITY };
+        let at = |value: f64| {
+            let mut moved = model.clone();
+            moved.set(own.effect, own.parameter, value).map_or(f64::INFINITY, |()| meter.off(&moved))
+        };
+        at(interval.low).max(at(interval.high))
+    };
+    of_robot.map(at_ends).fold(0.0, f64::max)
 }
 
 /// A model with some of its effects.

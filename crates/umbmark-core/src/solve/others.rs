@@ -6,7 +6,7 @@
 //! but lowers no error of runs left out, is not added, and may change the numbers all the same. How far the class reaches in these runs, the
 //! likelihood of the whole model says.
 
-use crate::diagnose::{Diagnosis, Reason};
+use crate::diagnose::{Diagnosis, Reason, missing};
 use crate::effect::{Entry, Model, find};
 use crate::evidence::tracks::Alone;
 use crate::evidence::{AnyEvidence, Estimate, Evidence, tracks};
@@ -32,20 +32,28 @@ pub struct Other {
     pub weight: f64,
 }
 
-/// The other effects of each class, each effect by another power of the speed, and the effects that are significant at this size of their
-/// test; those with which the model cannot be fitted, or of hardly any weight, are left out.
+/// The other effects of each class, each effect by another power of the speed, in place of what was added from return poses all effects of the
+/// catalogue, and the effects that are significant at this size of their test; those with which the model cannot be fitted, or of hardly any weight, are left out.
 pub(super) fn of(evidence: &AnyEvidence, learnt: &Learnt, size: f64) -> Vec<Other> {
     let entries =
         |class: &[&'static str]| -> Vec<&'static Entry> { class.iter().filter_map(|name| find(name).ok()).collect() };
     let classes = learnt.steps.iter().filter_map(|step| Some((step.added?, entries(&step.class))));
     let of_class = classes.flat_map(|(added, class)| class.into_iter().map(move |entry| (Some(added), entry)));
     let added = learnt.steps.iter().filter_map(|step| find(step.added?).ok());
-    let of_power = added.flat_map(|own| (own.powers)().iter().map(move |entry| (Some(own.about.name), *entry)));
+    let of_power = added.clone().flat_map(|own| (own.powers)().iter().map(move |entry| (Some(own.about.name), *entry)));
+    // A few means tell few effects apart, whatever the likeness of their signatures says of one that was not added yet.
+    let first = learnt.model.robot().drive.first_effects();
+    let of_means: Vec<&Entry> = match evidence {
+        AnyEvidence::Ends(_) => added.filter(|own| !first.contains(&own.about.name)).collect(),
+        AnyEvidence::Tracks(_) => Vec::new(),
+    };
+    let of_means =
+        of_means.iter().flat_map(|own| missing(&learnt.model).map(move |entry| (Some(own.about.name), entry)));
     let significant = learnt.diagnosis.ranking.iter().filter(|suspect| suspect.p_adjusted <= size);
     let beside = significant.flat_map(|suspect| entries(&suspect.class)).map(|entry| (None, entry));
     let has = |entry: &Entry| learnt.model.parts().iter().any(|part| part.effect == *entry);
     let mut pairs: Vec<(Option<&'static str>, &'static Entry)> = Vec::new();
-    for pair in of_class.chain(of_power).chain(beside).filter(|(_, entry)| !has(entry)) {
+    for pair in of_class.chain(of_power).chain(of_means).chain(beside).filter(|(_, entry)| !has(entry)) {
         if !pairs.contains(&pair) {
             pairs.push(pair);
         }

@@ -215,6 +215,36 @@ fn numbers_allow_for_other_effects_as_far_as_these_are_likely() {
     assert_eq!((likely.new, quarter.new), (alone.new, alone.new));
 }
 
+/// Return poses of a floor that turns the robot: START that lies elsewhere and wheels that are not round do as well, and with each of them the
+/// numbers are others.
+#[test]
+fn from_return_poses_every_effect_of_the_catalogue_may_stand_in_place_of_one_that_was_added() {
+    let truth = robot_with(&[("wheelbase", "e_b", 0.99), ("floor_slope_yaw", "sine_rad_per_m", 0.02)]);
+    let mut data = simulated(&truth, &Path::umbmark(), 5, 11, 0..1).remove(0);
+    data.runs.iter_mut().for_each(|run| run.returned.as_mut().unwrap().heading = None);
+    let answer = answer(&data);
+    let step = answer.learnt.steps.iter().find(|step| step.p_adjusted.is_some()).unwrap();
+    let in_place = |other: &&Other| other.added == step.added && !step.class.contains(&other.effect);
+    let beyond: Vec<&Other> = answer.others.iter().filter(in_place).collect();
+    assert!(beyond.iter().any(|other| other.weight > 0.01), "{:?}", answer.others);
+    let total: f64 = answer.others.iter().map(|other| other.weight).sum();
+    assert!(total < 1.0 + 1e-12, "{total}");
+}
+
+/// A number is right only if the runs would have shown that it is not.
+#[test]
+fn numbers_with_wide_intervals_are_not_called_right() {
+    let right = robot_with(&[("wheel_diameter_ratio", "e_d", 1.0), ("wheelbase", "e_b", 1.0)]);
+    let data = simulated(&right, &Path::umbmark(), 5, 2, 0..1).remove(0);
+    let mut answer = answer(&data);
+    assert!(!answer.needed && answer.tells_numbers(), "{:?} {:?}", answer.unseen, answer.off);
+    let off = answer.off.as_mut().unwrap();
+    (off.driven, off.with_numbers, off.known) = (0.07, 0.07, vec![Part { name: "floor_slope_yaw", worth: 0.07 }]);
+    assert!(answer.sentence().contains("Its numbers are right"), "{}", answer.sentence());
+    answer.unseen = Some(0.2);
+    assert!(answer.sentence().contains("do not tell whether its numbers are right"), "{}", answer.sentence());
+}
+
 /// Counts that are missed above 0.2 m/s, at speeds on both sides: slip that grows from rest on has nearly the same signature, but these runs refuse
 /// it, and the intervals stay narrow.
 #[test]

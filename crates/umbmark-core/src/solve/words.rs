@@ -4,12 +4,15 @@ use super::{Change, Measure, Off, Part, Solution};
 use crate::action::{Action, Wording};
 use crate::diagnose::{Experiment, Reason, Verdict};
 use crate::effect::find;
-use crate::prose::counted;
+use crate::evidence::Level;
+use crate::prose::{counted, listed};
 
 /// An error is told in tenths of a millimetre below this \[m\].
 const FINE: f64 = 0.01;
 /// A part is told where it is more than this share of the whole.
 pub(super) const TOLD: f64 = 0.02;
+/// Another effect in place of one that was added is named where its Akaike weight is more than this.
+const LIKELY: f64 = 0.05;
 /// New numbers make it worse where the error that they leave exceeds that as driven by this share.
 pub(super) const WORSE: f64 = 0.1;
 
@@ -97,7 +100,7 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
     if !solution.needed {
         said.push(match off.known.is_empty() && is_chance(off.driven) {
             true => "That is no more than chance makes: its numbers are right, and nothing is to be written.".into(),
-            false if off.driven - off.with_numbers > TOLD * off.driven => {
+            false if off.driven - off.with_numbers > TOLD * off.driven || !solution.tells_numbers() => {
                 "These runs do not tell whether its numbers are right: nothing is to be written.".into()
             }
             false => "Its numbers are right: nothing is to be written.".into(),
@@ -288,7 +291,16 @@ pub(super) fn next(solution: &Solution, words: Wording) -> Vec<String> {
         ));
     } else if solution.needed && !solution.changes.is_empty() {
         next.push(format!("Write the new numbers: {}.", words(Action::WriteNumbers)));
-        next.push(format!("Then drive the same test again: {} shows whether it is better.", words(Action::Score)));
+        let diagnosis = &solution.learnt.diagnosis;
+        let from_sheet = diagnosis.level == Level::Ends && diagnosis.setup.runs.is_empty();
+        let undo = match from_sheet {
+            true => " If it is twice as bad, the sheet has computed minus measured: change its signs, and solve again.",
+            false => "",
+        };
+        next.push(format!(
+            "Then drive the same test again: {} shows whether it is better.{undo}",
+            words(Action::Score)
+        ));
     }
     let found = || solution.learnt.diagnosis.setup.runs.iter().flat_map(|run| &run.jumps);
     let unrecorded = found().filter(|jump| jump.unrecorded.is_some()).count();
@@ -350,8 +362,15 @@ fn titles(solution: &Solution, parts: &[Part]) -> String {
         if let Some(law) = step.and_then(|step| step.law.as_ref()) {
             return format!("a law that is in no catalogue ({})", law.law.words());
         }
-        let others = step.into_iter().flat_map(|step| &step.class).filter(|name| **name != part.name);
-        let others: Vec<String> = others.map(|name| title(name)).collect();
+        let of_class = step.into_iter().flat_map(|step| &step.class).copied();
+        let as_likely = solution.others.iter().filter(|other| other.added == Some(part.name) && other.weight > LIKELY);
+        let as_likely = as_likely.map(|other| other.effect).filter(|name| find(name).is_ok());
+        let mut others: Vec<String> = Vec::new();
+        for other in of_class.chain(as_likely).filter(|name| *name != part.name).map(title) {
+            if !others.contains(&other) {
+                others.push(other);
+            }
+        }
         if others.is_empty() { title(part.name) } else { format!("{} (or {})", title(part.name), others.join(" or ")) }
     };
     listed(&parts.iter().map(told).collect::<Vec<_>>())
@@ -374,15 +393,6 @@ fn names<'a>(changes: impl IntoIterator<Item = &'a Change>) -> Vec<String> {
 /// A key without its unit.
 fn without_unit(key: &str) -> &str {
     ["_rad_per_m", "_m", "_rad"].into_iter().find_map(|unit| key.strip_suffix(unit)).unwrap_or(key)
-}
-
-/// "a", "a and b", "a, b and c".
-fn listed(words: &[String]) -> String {
-    match words {
-        [] => String::new(),
-        [one] => one.clone(),
-        [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
-    }
 }
 
 /// Millimetres; tenths of small ones.

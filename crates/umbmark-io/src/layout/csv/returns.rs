@@ -73,7 +73,8 @@ pub(crate) fn parse_returns(source: Source, warnings: &mut Vec<String>) -> Resul
         });
         Ok(())
     })?;
-    if on_start > 0 {
+    // Where all are empty, whoever wrote it means that the robot believes to stand on START.
+    if on_start > 0 && on_start < rows.len() {
         warnings.push(format!(
             "{file}: {on_start} of {} rows leave a cell of the computed pose empty; it was taken as 0",
             rows.len()
