@@ -175,7 +175,7 @@ fn two_runs_show_where_the_error_is_made_and_accuse_nothing() {
 #[test]
 fn one_direction_is_refused_and_told_why() {
     let folder = folder_of("labmate", |line| line.starts_with("ccw") && line.contains("systematic"));
-    let text = said(folder.path(), &["diagnose", ".", "--check"], 0);
+    let text = said(folder.path(), &["diagnose", ".", "--check"], 1);
     fits_the_terminal(&text);
     assert_data_eq!(text, file!["golden/diagnose_one_direction.txt"]);
 }

@@ -12,7 +12,7 @@ pub(super) static EFFECT: Entry = Entry::of::<SquaredForwardSlip>().wheels::<Squ
 impl Effect for SquaredForwardSlip {
     const ABOUT: About = About {
         name: "squared_forward_slip",
-        title: "slip ahead that grows with the square of the speed, rotations unchanged",
+        title: "slip ahead by the square of the speed",
         acts_on: ActsOn::Wheels,
         parameters: &[Parameter {
             flag: "squared-forward-slip",

@@ -48,7 +48,7 @@ pub(super) fn loses(k: f64, who: &str) -> String {
     format!("At 0.5 m/s {who} {} {} than counted.", percent(0.25 * k), either(k, "less far", "farther"))
 }
 
-pub(super) const PER_SQUARE: Parameter = Parameter::size("s2_per_m2", "", "s2/m2", 0.03, (-1.0, 1.0), "");
+pub(super) const PER_SQUARE: Parameter = Parameter::size("s2_per_m2", "", "s^2/m^2", 0.03, (-1.0, 1.0), "");
 
 #[cfg(test)]
 mod tests {

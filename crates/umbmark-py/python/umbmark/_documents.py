@@ -410,6 +410,9 @@ class Changed(Result, frozen=True):
     alone : tuple[Alone, ...]
         Where return poses show ratios only, and these changed: each length that accounts for it by
         itself.
+    start : StartMoved or None
+        Where START lies elsewhere in the second test, if that accounts for the change of the return
+        poses, too; else None.
     assumed : tuple[str, ...]
         Effects that one of the tests does not show, or with which it cannot be fitted; they are
         taken to be in it as in the other.
@@ -441,6 +444,7 @@ class Changed(Result, frozen=True):
     robot: tuple[Moved, ...]
     reference: tuple[Moved, ...]
     alone: tuple[Alone, ...]
+    start: StartMoved | None
     assumed: tuple[str, ...]
     with_before_m: float | None
     with_after_m: float | None
@@ -523,6 +527,27 @@ class Alone(Record, frozen=True):
     key: str
     share: float
     standard_error: float | None
+    p: float
+
+
+class StartMoved(Record, frozen=True):
+    """Where START lies elsewhere in the second test.
+
+    Attributes
+    ----------
+    x_m : float
+        Along the first leg, in m.
+    y_m : float
+        To its left, in m.
+    heading_rad : float or None
+        Counter-clockwise, in rad; None where the returns have no headings.
+    p : float
+        p of what it leaves of the change.
+    """
+
+    x_m: float
+    y_m: float
+    heading_rad: float | None
     p: float
 
 

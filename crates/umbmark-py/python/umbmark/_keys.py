@@ -89,6 +89,8 @@ EffectName: TypeAlias = Literal[
     "speed_slip_right",
     "body_speed_slip",
     "forward_slip",
+    "squared_speed_slip",
+    "squared_forward_slip",
     "acceleration_slip",
     "turn_slip",
     "turn_slip_rate",
@@ -229,6 +231,7 @@ class EffectKeys(TypedDict, total=False):
     rad_per_m_s2: Drawn
     ahead_m: Drawn
     s_per_m: Drawn
+    s2_per_m2: Drawn
     s_per_rad: Drawn
     difference: Drawn
     kick_rad: Drawn
