@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use umbmark_core::diagnose::Verdict;
 use umbmark_core::effect::Model;
 use umbmark_core::result;
 use umbmark_core::solve::{Solution, solve};
@@ -70,7 +71,13 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         Some(file) if !session.json() => writeln!(session.out(), "\nwrote {}", file.display())?,
         _ => {}
     }
-    Ok(if arguments.check && solution.misses_something() { ExitCode::from(3) } else { ExitCode::SUCCESS })
+    Ok(match solution.learnt.verdict {
+        _ if !arguments.check => ExitCode::SUCCESS,
+        // Runs that test nothing are no reason to pass.
+        Verdict::NotEnoughData => ExitCode::FAILURE,
+        _ if solution.misses_something() => ExitCode::from(3),
+        _ => ExitCode::SUCCESS,
+    })
 }
 
 /// The model, what it leaves, and what was found of the data.

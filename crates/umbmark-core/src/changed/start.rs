@@ -1,7 +1,8 @@
 //! Whether a START that lies elsewhere accounts for a change of return errors.
 //!
-//! A START that moves by (x, y, θ) between two tests adds the same to the return errors of both directions, to first order. With the mean
-//! return errors m of each test and direction and the pooled scatter S of the runs,
+//! A START that moves by (x, y, θ) between two tests adds the same to the return errors of both directions, as long as θ times the return errors
+//! themselves is within their scatter: a START that is turned by more is not recognised. With the mean return errors m of each test and
+//! direction and the pooled scatter S of the runs,
 //!
 //! ```text
 //! u = (m_cw - m_ccw)_after - (m_cw - m_ccw)_before,   T² = uᵀ V⁻¹ u,   V = Σ S/n over the four means

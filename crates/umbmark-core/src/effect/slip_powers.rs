@@ -1,11 +1,11 @@
-//! Slip by the root and by the cube of the speed.
+//! Slip by the root, the square and the cube of the speed.
 //!
 //! The catalogue has slip in proportion to speed, and slip by its square. A robot's tyres need not follow either. Where runs do not tell
 //! which power holds, they do not tell what the robot does at rest, and the values at rest (E_s, E_b) are others: the intervals of what is
-//! learnt allow for these powers too. No cause is known that makes them, so the catalogue does not have them.
+//! learnt allow for these powers too. Those that are entries here have no cause that is known, so the catalogue does not have them.
 
 use super::{About, ActsOn, BodyLaw, Effect, Entry, Here, WheelLaw, squared_forward_slip, squared_speed_slip};
-use super::{body_speed_slip, forward_slip, speed_slip};
+use super::{at_work, body_speed_slip, forward_slip, speed_slip};
 use crate::drive::WheelTravel;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -74,7 +74,7 @@ impl<const TWICE: u8, const LEFT: u8, const RIGHT: u8> Effect for OfWheels<TWICE
     );
 
     fn varies(p: &[f64]) -> bool {
-        p[0] != 0.0
+        at_work(p)
     }
 }
 
@@ -97,7 +97,7 @@ impl<const TWICE: u8> Effect for OfBody<TWICE> {
     );
 
     fn varies(p: &[f64]) -> bool {
-        p[0] != 0.0
+        at_work(p)
     }
 }
 
@@ -120,7 +120,7 @@ impl<const TWICE: u8> Effect for Ahead<TWICE> {
     );
 
     fn varies(p: &[f64]) -> bool {
-        p[0] != 0.0
+        at_work(p)
     }
 }
 
@@ -143,7 +143,7 @@ impl<const TWICE: u8> Effect for InTurns<TWICE> {
     );
 
     fn varies(p: &[f64]) -> bool {
-        p[0] != 0.0
+        at_work(p)
     }
 }
 
