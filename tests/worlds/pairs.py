@@ -18,12 +18,14 @@ from plans import Random
 from record import stream
 from study import ROOT
 
-CHANGES = ("nothing", "wheel", "wheelbase", "noise", "start")
+CHANGES = ("nothing", "wheel", "wheelbase", "noise", "start", "turned_start")
 """What a pair may differ by."""
 WHEEL, WHEELBASE, NOISE = 0.998, 1.01, 3.0
 """Factors of the right wheel, the wheelbase, and the noise of both wheels."""
 START_M = (0.05, -0.03)
 """Where START is by the tape of the second test."""
+TURNED_RAD = 0.035
+"""By how much it is turned there, in the pairs with a START that is turned, too."""
 PIECE_M = 0.02
 
 
@@ -99,10 +101,14 @@ def measured(robot: Robot, test: Test, random: Random) -> list[Returned]:
     return rows
 
 
-def from_elsewhere(rows: list[Returned]) -> list[Returned]:
+def from_elsewhere(rows: list[Returned], turned: float) -> list[Returned]:
     """The same returns measured from a START that lies elsewhere."""
     along, left = START_M
-    return [(direction, run, x + along, y + left, turned) for direction, run, x, y, turned in rows]
+    c, s = cos(turned), sin(turned)
+    return [
+        (direction, run, along + c * x - s * y, left + s * x + c * y, heading + turned)
+        for direction, run, x, y, heading in rows
+    ]
 
 
 def write(folder: File, robot: Robot, test: Test, rows: list[Returned]) -> None:
@@ -127,8 +133,8 @@ def said(what: str, seed: int, binary: File) -> dict[str, Any]:
         folders = [File(place) / name for name in ("before", "after")]
         for folder, own in zip(folders, (robot, changed(robot, what)), strict=True):
             rows = measured(own, test, random)
-            if what == "start" and folder.name == "after":
-                rows = from_elsewhere(rows)
+            if what in ("start", "turned_start") and folder.name == "after":
+                rows = from_elsewhere(rows, TURNED_RAD if what == "turned_start" else 0.0)
             write(folder, own, test, rows)
         words = [str(binary), "changed", *map(str, folders), "--json"]
         answer = subprocess.run(words, capture_output=True, text=True, timeout=300)

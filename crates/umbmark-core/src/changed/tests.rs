@@ -1,7 +1,9 @@
 //! Pairs of tests of simulated robots, whose changes are known.
 
 use super::*;
+use crate::dataset::ReturnError;
 use crate::drive::{DifferentialDrive, Robot};
+use crate::geometry::Pose2;
 use crate::likelihood::watched::watched;
 use crate::preset::Preset;
 use std::sync::LazyLock;
@@ -97,25 +99,36 @@ fn return_poses_name_the_length_that_accounts_for_the_change() {
     assert_eq!((moved(&base).as_slice(), base.alone[0].key), (&["wheelbase_over_diameter"][..], "wheelbase_m"));
 }
 
+/// The returns as they are measured from a START that was moved by 5 cm and -3 cm and turned \[rad\].
+fn from_elsewhere(mut data: Dataset, turned: f64, with_headings: bool) -> Dataset {
+    let start = Pose2::new(0.05, -0.03, turned);
+    for run in &mut data.runs {
+        let error = run.returned.as_mut().unwrap();
+        let seen = start.compose(&Pose2::new(error.x, error.y, error.heading.unwrap()));
+        *error = ReturnError { x: seen.x, y: seen.y, heading: with_headings.then_some(seen.heading) };
+    }
+    data
+}
+
 /// A START that lies elsewhere looks like other wheels; what the wheels do does not look like START, because it differs with the direction.
 #[test]
 fn a_start_that_lies_elsewhere_is_named_beside_what_it_looks_like() {
-    let mut after = returns(&[], 2);
-    for run in &mut after.runs {
-        let error = run.returned.as_mut().unwrap();
-        (error.x, error.y) = (error.x + 0.05, error.y - 0.03);
+    let before = returns(&[("wheelbase", "e_b", 1.03)], 1);
+    let again = || returns(&[("wheelbase", "e_b", 1.03)], 2);
+    for (turned, with_headings) in [(0.0, true), (0.0, false), (0.035, true), (-0.06, true), (0.035, false)] {
+        let found = between(&before, &from_elsewhere(again(), turned, with_headings)).unwrap();
+        let case = format!("turned by {turned}, headings: {with_headings}: {}", found.sentence());
+        assert!(found.is_changed(), "{case}");
+        let start = found.start.unwrap_or_else(|| panic!("{case}"));
+        assert!((start.x - 0.05).abs() < 0.01 && (start.y + 0.03).abs() < 0.01, "{start:?}");
+        if with_headings {
+            assert!((start.heading.unwrap() - turned).abs() < 0.01, "{start:?}");
+        }
+        let said = found.sentence();
+        assert!(said.contains("A START that lies elsewhere accounts for it, too: by +"), "{said}");
     }
-    let found = between(&returns(&[], 1), &after).unwrap();
-    assert!(found.is_changed());
-    let start = found.start.unwrap();
-    assert!((start.x - 0.05).abs() < 0.01 && (start.y + 0.03).abs() < 0.01, "{start:?}");
-    assert!(
-        found.sentence().contains("A START that lies elsewhere accounts for it, too: by +"),
-        "{}",
-        found.sentence()
-    );
-    for worn in [returns(&wheels(1.0, 0.997), 2), returns(&[("wheelbase", "e_b", 1.02)], 2)] {
-        let found = between(&returns(&[], 1), &worn).unwrap();
+    for worn in [returns(&wheels(1.0, 0.997), 2), returns(&[("wheelbase", "e_b", 1.05)], 2)] {
+        let found = between(&before, &worn).unwrap();
         assert_eq!((found.is_changed(), found.start), (true, None));
     }
 }

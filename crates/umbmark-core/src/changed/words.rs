@@ -1,7 +1,9 @@
 //! What changed, in words.
 
 use super::quantities::Of;
-use super::{Changed, Moved, StartMoved};
+use super::{Changed, Moved, StartMoved, is_of_test};
+use crate::effect::{Model, Part, differences};
+use crate::prose::listed;
 
 /// Lengths are told in millimetres, and changes of ratios in per cent.
 pub(super) fn sentence(changed: &Changed) -> String {
@@ -11,6 +13,7 @@ pub(super) fn sentence(changed: &Changed) -> String {
         said.extend(doubts);
         said.push("What follows is of models that are not right.".into());
     }
+    said.extend(entered(changed));
     let moved: Vec<&Moved> = changed.moved().collect();
     said.extend(moved.iter().map(|moved| of(moved)));
     said.extend(by_itself(changed));
@@ -38,6 +41,7 @@ pub(super) fn sentence(changed: &Changed) -> String {
     if !references.is_empty() {
         said.push(format!("Of the reference, which is not the robot's, changed: {}.", references.join(", ")));
     }
+    said.extend(of_one_test(changed));
     if !changed.assumed.is_empty() {
         said.push(format!(
             "Taken to be the same in both, because one of them does not show them: {}.",
@@ -45,6 +49,48 @@ pub(super) fn sentence(changed: &Changed) -> String {
         ));
     }
     said.join(" ")
+}
+
+/// That the tests are of robots with other nominal numbers: an entry that was corrected between them, or another robot.
+fn entered(changed: &Changed) -> Option<String> {
+    let [before, after] = [&changed.before, &changed.after].map(|test| test.fit.model.robot());
+    let differs = differences(before, after)?;
+    let numbers: Vec<String> =
+        differs.iter().map(|(key, before, after)| format!("{key} = {before} before and {after} after")).collect();
+    (!numbers.is_empty()).then(|| {
+        format!(
+            "The tests are of robots with other nominal numbers: {}. If it is one robot that was entered anew, what follows compares its true \
+             numbers; two robots must not be compared.",
+            listed(&numbers)
+        )
+    })
+}
+
+/// What only one of the tests has of the reference and of START.
+fn of_one_test(changed: &Changed) -> Option<String> {
+    let tests = [
+        ("before", &changed.before.fit.model, &changed.after.fit.model),
+        ("after", &changed.after.fit.model, &changed.before.fit.model),
+    ];
+    let told: Vec<String> = tests
+        .into_iter()
+        .filter_map(|(name, own, other): (_, &Model, &Model)| {
+            let lacks = |part: &&Part| other.parts().iter().all(|of| of.effect.name() != part.effect.name());
+            let names: Vec<&str> = own
+                .parts()
+                .iter()
+                .filter(|part| part.free && is_of_test(part))
+                .filter(lacks)
+                .filter_map(title)
+                .collect();
+            (!names.is_empty()).then(|| format!("{} in the test {name}", listed(&names)))
+        })
+        .collect();
+    (!told.is_empty()).then(|| format!("Only in one test, and not the robot's: {}.", told.join("; ")))
+}
+
+fn title(part: &Part) -> Option<&'static str> {
+    part.effect.entry().map(|entry| entry.about.title)
 }
 
 /// The lengths that account for the change by themselves.

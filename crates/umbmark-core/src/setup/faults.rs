@@ -126,6 +126,13 @@ pub enum Fault {
     },
     /// Return headings are in degrees.
     ReturnHeadingsInDegrees,
+    /// Returns were measured from another point than START.
+    ReturnsFromElsewhere {
+        /// From that point to the middle of the returns \[m\].
+        distance: f64,
+        /// From the returns of one direction to those of the other \[m\].
+        apart: f64,
+    },
 }
 
 impl Fault {
@@ -211,6 +218,10 @@ impl Fault {
             Fault::ReturnsIn { unit, distance, way } => format!(
                 "the return errors are in {unit}, not in metres: read as metres, their median is {distance:.1} m after a way of {way:.1} m"
             ),
+            Fault::ReturnsFromElsewhere { distance, apart } => format!(
+                "the returns were not measured from START: those of both directions lie {distance:.2} m from (0, 0) and {apart:.2} m from each \
+                 other, and wheels and wheelbase take them as far apart as away"
+            ),
             Fault::ReturnHeadingsInDegrees => {
                 "the return headings are in degrees, not in radians: read as degrees they agree with the return positions, read as radians they do not".into()
             }
@@ -292,6 +303,11 @@ impl Fault {
             Fault::ReturnsIn { .. } => {
                 "write the unit into the names of the columns: of returns.csv ex_mm and ey_mm (or ex_cm and ey_cm), for poses x_abs_mm, y_abs_mm, \
                  x_calc_mm and y_calc_mm; of logs x_ref_mm and y_ref_mm (or _cm)".into()
+            }
+            Fault::ReturnsFromElsewhere { .. } => {
+                "measure the pose of START in the same frame, and enter each return as seen from there, less what the odometry reports: x along the \
+                 first leg, y to its left (if they are from START, all runs went the same way round, whatever their direction says)"
+                    .into()
             }
             Fault::ReturnHeadingsInDegrees => {
                 "call the column etheta_deg in returns.csv, or the two columns theta_abs_deg and theta_calc_deg".into()

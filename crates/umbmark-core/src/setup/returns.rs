@@ -11,6 +11,8 @@
 //! S: sum of squares about the group means, pooled over the directions of a test. p is multiplied by the number of subsets, N over i, by
 //! the number of sizes i, of coordinates and of tests (Bonferroni), so normal scatter gives a false alarm in at most [`FALSE_ALARMS`] of all data sets.
 
+mod elsewhere;
+
 use super::Fault;
 use super::by_positions::headings_by_positions;
 use crate::drive::{Robot, WheelTravel};
@@ -164,11 +166,11 @@ impl Returned {
     /// Examines the return errors of all runs.
     pub fn of(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Returned {
         let ways: Vec<Option<f64>> = runs.iter().map(|run| run.log.as_ref().and_then(|log| way(log, robot))).collect();
-        let faults: Vec<Fault> =
-            too_far(runs, &ways, path).or_else(|| in_degrees(runs, robot, path)).into_iter().collect();
+        let fault =
+            elsewhere::of(runs, path).or_else(|| too_far(runs, &ways, path)).or_else(|| in_degrees(runs, robot, path));
         // If a unit is wrong, outlying values in it mean nothing.
-        let outlying = if faults.is_empty() { outlying(runs, &ways) } else { Vec::new() };
-        Returned { faults, outlying }
+        let outlying = if fault.is_none() { outlying(runs, &ways) } else { Vec::new() };
+        Returned { faults: fault.into_iter().collect(), outlying }
     }
 }
 

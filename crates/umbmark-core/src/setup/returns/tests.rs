@@ -3,6 +3,7 @@
 use super::*;
 use crate::calibrate::{Correction, drive_again};
 use crate::diagnose::tests::{robot_with, simulated, trials};
+use crate::geometry::Pose2;
 use crate::likelihood::watched::watched;
 use crate::random::Stream;
 use crate::run::ReturnError;
@@ -169,6 +170,29 @@ fn large_errors_of_a_robot_are_no_fault_and_the_same_in_millimetres_or_degrees_i
     }
     let _ = writeln!(std::io::stderr(), "of {honest} robots: mm {}, deg {}", told[0], told[1]);
     assert_eq!(told[0], 200);
+}
+
+/// Seeds 20: usual robots, whose returns are measured in the frame of a room; and from START, which lies a little beside the mark.
+#[test]
+fn returns_in_the_frame_of_a_room_are_told_from_errors_and_from_units() {
+    let (path, mut told) = (Path::umbmark(), 0);
+    for data in simulated(&robot_with(&[]), &path, 5, 20, 0..100) {
+        let faults = |runs: &[Run]| Returned::of(runs, &Robot::labmate(), Some(&path)).faults;
+        let seen_from = |x: f64, y: f64, turned: f64| {
+            let start = Pose2::new(x, y, turned);
+            let of = |own: ReturnError| {
+                let pose = start.compose(&Pose2::new(own.x, own.y, own.heading.unwrap_or(0.0)));
+                ReturnError { x: pose.x, y: pose.y, heading: own.heading.map(|_| wrap(pose.heading)) }
+            };
+            data.runs.iter().map(|run| Run { returned: run.returned.map(of), ..run.clone() }).collect::<Vec<_>>()
+        };
+        assert_eq!(faults(&seen_from(0.1, -0.05, 0.0)), []);
+        let elsewhere = [seen_from(3.0, 2.0, 0.0), seen_from(-1.0, 4.0, 1.6), seen_from(20.0, -8.0, -3.0)];
+        told +=
+            elsewhere.iter().filter(|runs| matches!(faults(runs)[..], [Fault::ReturnsFromElsewhere { .. }])).count();
+    }
+    let _ = writeln!(std::io::stderr(), "of 300 sets {told} told");
+    assert!(told > 295, "{told}");
 }
 
 /// Odometry that turns around while the robot drives straight ends nearly twice the way from it; no error is larger.
