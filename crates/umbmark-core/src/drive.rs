@@ -135,11 +135,28 @@ macro_rules! drives {
                 }
             }
 
+            /// The effects that become numbers of the drive: the [first ones](Drive::first_effects), then those which numbers hold besides.
+            pub fn own_effects(&self) -> Vec<&'static str> {
+                let more = match self {
+                    $(Drive::$kind(_) => <$drive as Kinematics>::OWN_EFFECTS,)+
+                };
+                self.first_effects().into_iter().chain(more.iter().copied()).collect()
+            }
+
             /// The drive as its odometry must believe it to be, where these are the true values of its [first
             /// effects](Drive::first_effects).
             pub fn corrected(&self, first: [f64; 3]) -> Result<Drive, DriveError> {
                 match self {
                     $(Drive::$kind(drive) => drive.corrected(first).map(Drive::$kind),)+
+                }
+            }
+
+            /// The same for the true values of its [own effects](Drive::own_effects).
+            pub(crate) fn with_own(&self, own: &[f64]) -> Result<Drive, DriveError> {
+                match self {
+                    $(Drive::$kind(drive) => {
+                        drive.corrected([own[0], own[1], own[2]])?.also_corrected(&own[3..]).map(Drive::$kind)
+                    })+
                 }
             }
 

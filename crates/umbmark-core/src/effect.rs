@@ -24,6 +24,7 @@ mod laws;
 mod model;
 mod name;
 mod number;
+mod own;
 mod rollers;
 mod slip_powers;
 mod text;

@@ -20,7 +20,7 @@ mod others;
 mod words;
 
 pub use numbers::Change;
-pub(crate) use numbers::{First, deviation};
+pub(crate) use numbers::{Own, deviation};
 pub(crate) use off::Meter;
 pub use off::{Measure, Off, Part};
 pub use others::Other;
@@ -240,7 +240,7 @@ impl Solution {
 
     /// The robot with the new numbers.
     pub fn corrected(&self) -> Result<Robot, DriveError> {
-        self.correction().apply(self.learnt.model.robot())
+        self.learnt.model.corrected_robot()
     }
 
     /// The answer in one or two sentences for people.

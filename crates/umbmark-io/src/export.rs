@@ -11,7 +11,6 @@ pub use urdf::UrdfFile;
 use super::{Remedy, RobotFile, Words};
 use std::fmt;
 use umbmark_core::apply::CompileError;
-use umbmark_core::calibrate::Correction;
 use umbmark_core::drive::{Drive, DriveError, Robot};
 use umbmark_core::effect::{Changes, Model, ModelError, Part};
 use umbmark_core::geometry::Pose2;
@@ -246,14 +245,7 @@ impl<'a> Export<'a> {
 
     /// The robot with the numbers that its odometry should have.
     fn corrected(&self) -> Result<Robot, ExportError> {
-        let mut drive = self.robot().drive.corrected(Correction::of(self.model).values())?;
-        let first = drive.first_effects();
-        for (effect, parameter, key) in LENGTHS.into_iter().filter(|(effect, ..)| !first.contains(effect)) {
-            if let (Some(ratio), Some(nominal)) = (self.model.get(effect, parameter), drive.number(key)) {
-                drive = drive.with(key, ratio * nominal)?;
-            }
-        }
-        Ok(Robot { drive, ..self.robot().clone() })
+        Ok(self.model.corrected_robot()?)
     }
 
     /// The error of a drive that a target cannot have.
@@ -265,8 +257,7 @@ impl<'a> Export<'a> {
     /// Effects of the model that its corrected numbers do not undo, a sentence each.
     fn uncorrected(&self) -> Vec<String> {
         let drive: &Drive = &self.robot().drive;
-        let corrected =
-            |name: &str| drive.first_effects().contains(&name) || LENGTHS.iter().any(|(effect, ..)| *effect == name);
+        let corrected = |name: &str| drive.own_effects().contains(&name);
         let said = |part: &&Part| moves(part, self.robot()) && !corrected(part.effect.name());
         self.model.parts().iter().filter(said).map(not_corrected).collect()
     }
@@ -274,17 +265,14 @@ impl<'a> Export<'a> {
     /// What every file says first: what wrote it, and which errors are corrected in it.
     fn heading(&self) -> String {
         let kind = self.robot().drive.kind();
-        let names = self.robot().drive.first_effects();
-        let values = Correction::of(self.model).values();
+        let names = self.robot().drive.own_effects();
+        let values = self.model.own_values();
         let ratio = |name: &str| if kind.has_axle_wheels() { letters(name) } else { name.to_owned() };
         let values: Vec<String> =
             names.iter().zip(values).map(|(name, value)| format!("{} {}", ratio(name), text::number(value))).collect();
         format!("umbmark {}: {}", umbmark_core::VERSION, values.join(", "))
     }
 }
-
-/// Effects beside the first ones that a number of the drive corrects: effect, parameter, and the number's key.
-const LENGTHS: [(&str, &str, &str); 1] = [("axle_distance", "ratio", "axle_distance_m")];
 
 /// The letters of the paper.
 fn letters(effect: &str) -> String {

@@ -9,7 +9,7 @@
 //!
 //! for the measured change y with covariance V; F has 1 and ν degrees of freedom where it is that length.
 
-use super::quantities::{first, ratio};
+use super::quantities::{own, ratio};
 use crate::evidence::Fit;
 use crate::stats::f_upper_tail;
 use nalgebra::{Matrix2, Vector2};
@@ -40,8 +40,8 @@ pub(super) fn of(fits: &[Fit; 2], size: f64) -> Vec<Alone> {
     let drive = &fits[0].model.robot().drive;
     let (mut change, mut covariance, mut freedom) = (Vector2::zeros(), Matrix2::zeros(), 0.0);
     for (sign, fit) in [-1.0, 1.0].into_iter().zip(fits) {
-        let first = first(fit);
-        let is_ratios = first.shown.iter().map(|(which, _)| *which).eq([0, 1]);
+        let shown = own(fit);
+        let is_ratios = shown.shown.iter().map(|(which, _)| *which).eq([0, 1]);
         if !drive.kind().has_axle_wheels() || !is_ratios {
             return Vec::new();
         }
@@ -53,8 +53,8 @@ pub(super) fn of(fits: &[Fit; 2], size: f64) -> Vec<Alone> {
             fit.estimates.iter().find(|own| own.effect == effect).map_or(1.0, |own| own.value)
         });
         let scale = Matrix2::from_diagonal(&Vector2::new(1.0 / e_d, 1.0 / e_b));
-        covariance += scale * Matrix2::from_fn(|i, j| first.covariance[(i, j)]) * scale;
-        freedom += first.freedom().unwrap_or(0.0);
+        covariance += scale * Matrix2::from_fn(|i, j| shown.covariance[(i, j)]) * scale;
+        freedom += shown.freedom().unwrap_or(0.0);
     }
     let Some(inverse) = covariance.try_inverse() else { return Vec::new() };
     let alone = |(key, meaning, [a, b]): (&'static str, &'static str, [f64; 2])| {

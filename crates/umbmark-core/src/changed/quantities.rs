@@ -2,9 +2,8 @@
 
 use super::Value;
 use super::model::is_of_test;
-use crate::calibrate::Correction;
 use crate::evidence::{Estimate, Fit};
-use crate::solve::{First, deviation};
+use crate::solve::{Own, deviation};
 use nalgebra::DVector;
 
 /// What a number belongs to.
@@ -51,14 +50,14 @@ const RATIOS: [(&str, &str); 2] = [
 
 /// All that both fits determine, before and after.
 pub(super) fn of(fits: &[Fit; 2]) -> Vec<(Quantity, [Value; 2])> {
-    let first = fits[0].model.robot().drive.first_effects();
+    let own = fits[0].model.robot().drive.own_effects();
     let mut found = geometry(fits);
     for before in &fits[0].estimates {
         let Some(part) = fits[0].model.parts().iter().find(|part| part.effect.name() == before.effect) else {
             continue;
         };
         let Some(after) = fits[1].estimates.iter().find(|after| same(before, after)) else { continue };
-        if first.contains(&before.effect) {
+        if own.contains(&before.effect) {
             continue;
         }
         let title = part.effect.entry().map_or(before.effect, |entry| entry.about.title);
@@ -85,18 +84,17 @@ fn value(estimate: &Estimate) -> Value {
     Value { value, standard_error, degrees_of_freedom }
 }
 
-/// The first effects of a fit.
-pub(super) fn first(fit: &Fit) -> First<'_> {
-    First::of(&fit.model, &fit.estimates, &fit.correlations)
+/// The own effects of a fit.
+pub(super) fn own(fit: &Fit) -> Own<'_> {
+    Own::of(&fit.model, &fit.estimates, &fit.correlations)
 }
 
 /// The robot's own numbers.
 fn geometry(fits: &[Fit; 2]) -> Vec<(Quantity, [Value; 2])> {
     let drive = &fits[0].model.robot().drive;
-    let [before, after] =
-        [0, 1].map(|test| first(&fits[test]).shown.iter().map(|(which, _)| *which).collect::<Vec<_>>());
-    let all = drive.first_effects().len();
-    if before.len() == all && after.len() == all {
+    let [before, after] = [0, 1].map(|test| own(&fits[test]).shown.iter().map(|(which, _)| *which).collect::<Vec<_>>());
+    let shows_all = |shown: &[usize]| (0..drive.first_effects().len()).all(|which| shown.contains(&which));
+    if shows_all(&before) && shows_all(&after) {
         let parameters = drive.kind().parameters();
         let [before, after] = [numbers(&fits[0]), numbers(&fits[1])];
         let (Some(before), Some(after)) = (before, after) else { return Vec::new() };
@@ -114,25 +112,25 @@ fn geometry(fits: &[Fit; 2]) -> Vec<(Quantity, [Value; 2])> {
         };
         return both.filter_map(of).collect();
     }
-    let first = drive.first_effects();
+    let own = drive.own_effects();
     let of = |before: &Estimate| {
         let after = fits[1].estimates.iter().find(|after| same(before, after))?;
         let (key, meaning) = (format!("{}.{}", before.effect, before.parameter), in_words(before.effect));
         Some((Quantity { of: Of::Robot, key, meaning }, [value(before), value(after)]))
     };
-    fits[0].estimates.iter().filter(|before| first.contains(&before.effect)).filter_map(of).collect()
+    fits[0].estimates.iter().filter(|before| own.contains(&before.effect)).filter_map(of).collect()
 }
 
 /// The numbers of the drive with the fitted effects in them.
 fn numbers(fit: &Fit) -> Option<Vec<Value>> {
-    let corrected = fit.model.robot().drive.corrected(Correction::of(&fit.model).values()).ok()?.values();
-    let first = first(fit);
-    let freedom = first.freedom().unwrap_or(1.0);
-    let of = |(value, own): (&f64, DVector<f64>)| {
-        let standard_error = deviation(&first.covariance, &own);
+    let corrected = fit.model.corrected_robot().ok()?.drive.values();
+    let own = own(fit);
+    let freedom = own.freedom().unwrap_or(1.0);
+    let of = |(value, slope): (&f64, DVector<f64>)| {
+        let standard_error = deviation(&own.covariance, &slope);
         Value { value: *value, standard_error, degrees_of_freedom: freedom }
     };
-    Some(corrected.iter().zip(first.slopes(&fit.model)).map(of).collect())
+    Some(corrected.iter().zip(own.slopes(&fit.model)).map(of).collect())
 }
 
 /// One of the [RATIOS]: E_d and E_b times what is nominal.

@@ -108,6 +108,8 @@ impl Kinematics for AckermannDrive {
 
     const FIRST_EFFECTS: [&'static str; 3] = ["steering_zero", "steering_gain", "scale"];
 
+    const OWN_EFFECTS: &'static [&'static str] = &["axle_distance"];
+
     fn axle(&self) -> &DifferentialDrive {
         &self.axle
     }
@@ -137,6 +139,17 @@ impl Kinematics for AckermannDrive {
             self.axle.wheel_diameter_left() * scale,
             self.steering_ticks / (1.0 + gain),
             (1.0 + gain) * (self.steering_zero + zero),
+        )
+    }
+
+    /// For a ratio of the true axle distance to the nominal one.
+    fn also_corrected(&self, own: &[f64]) -> Result<Self, DriveError> {
+        AckermannDrive::new(
+            self.axle_distance * own[0],
+            self.axle.wheelbase(),
+            self.axle.wheel_diameter_left(),
+            self.steering_ticks,
+            self.steering_zero,
         )
     }
 

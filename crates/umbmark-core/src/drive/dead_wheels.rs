@@ -83,6 +83,8 @@ impl Kinematics for DeadWheelsDrive {
 
     const FIRST_EFFECTS: [&'static str; 3] = ["along_diameter_ratio", "wheelbase", "roller_scale"];
 
+    const OWN_EFFECTS: &'static [&'static str] = &["across_diameter_ratio", "across_wheel_offset"];
+
     const EFFECTS: &'static [&'static str] = &["wheelbase"];
 
     fn axle(&self) -> &DifferentialDrive {
@@ -104,6 +106,12 @@ impl Kinematics for DeadWheelsDrive {
         let [a, b, c] = self.diameters;
         let diameters = [a * left, b * left * sides, c * scale];
         DeadWheelsDrive::new(self.axle.wheelbase() * distance, self.ahead * distance, diameters)
+    }
+
+    /// For a ratio of the diameter across to those along, and a place across \[m\] ahead of the believed one.
+    fn also_corrected(&self, own: &[f64]) -> Result<Self, DriveError> {
+        let [a, b, c] = self.diameters;
+        DeadWheelsDrive::new(self.axle.wheelbase(), self.ahead + own[1], [a, b, c * own[0]])
     }
 
     fn wheel_layout(&self) -> [f64; 2] {

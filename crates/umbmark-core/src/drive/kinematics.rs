@@ -17,7 +17,7 @@ pub struct Spelling {
 
 /// One drive: its numbers, and how its two counters become travel of its axle. Where nothing else is said, the counters are
 /// those of the axle's two wheels.
-pub(super) trait Kinematics: Sized {
+pub(super) trait Kinematics: Copy {
     /// As in files.
     const NAME: &'static str;
 
@@ -41,6 +41,9 @@ pub(super) trait Kinematics: Sized {
 
     /// See [`Drive::first_effects`](super::Drive::first_effects); those of all robots of the kind, unless it says otherwise.
     const FIRST_EFFECTS: [&'static str; 3] = ["wheel_diameter_ratio", "wheelbase", "scale"];
+
+    /// See [`Drive::own_effects`](super::Drive::own_effects): those beside the first ones.
+    const OWN_EFFECTS: &'static [&'static str] = &[];
 
     /// Effects that it may have beside those which name it in their [`DRIVES`](crate::effect::Effect::DRIVES).
     const EFFECTS: &'static [&'static str] = &[];
@@ -99,6 +102,11 @@ pub(super) trait Kinematics: Sized {
 
     /// The drive as its odometry must believe it to be, where these are the true values of its first effects.
     fn corrected(&self, first: [f64; 3]) -> Result<Self, DriveError>;
+
+    /// The same for the true values of its [own effects](Kinematics::OWN_EFFECTS), one each.
+    fn also_corrected(&self, _own: &[f64]) -> Result<Self, DriveError> {
+        Ok(*self)
+    }
 
     /// Distance of the steered wheel from the axle \[m\]; for a drive without one, that of a wheel which would steer it as far
     /// before the axle as its wheels are apart.

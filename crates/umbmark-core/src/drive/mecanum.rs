@@ -84,6 +84,8 @@ impl Kinematics for MecanumDrive {
 
     const FIRST_EFFECTS: [&'static str; 3] = ["side_diameter_ratio", "wheelbase", "roller_scale"];
 
+    const OWN_EFFECTS: &'static [&'static str] = &["diagonal_diameter_ratio", "axle_diameter_ratio"];
+
     const EFFECTS: &'static [&'static str] = &["wheelbase"];
 
     fn axle(&self) -> &DifferentialDrive {
@@ -105,6 +107,16 @@ impl Kinematics for MecanumDrive {
         let [a, b, c, d] = self.diameters;
         let right = left * sides;
         MecanumDrive::new(self.length * distance, self.track * distance, [a * left, b * right, c * left, d * right])
+    }
+
+    /// For ratios of the diameters of front left and rear right to the others, and of the front ones to the rear ones.
+    fn also_corrected(&self, own: &[f64]) -> Result<Self, DriveError> {
+        let [diagonal, axle] = [own[0], own[1]].map(|ratio| (ratio - 1.0) / (ratio + 1.0));
+        let of = |wheel: usize, ahead: f64, left: f64| {
+            self.diameters[wheel] * (1.0 + ahead * left * diagonal) * (1.0 + ahead * axle)
+        };
+        let diameters = [of(0, 1.0, 1.0), of(1, 1.0, -1.0), of(2, -1.0, 1.0), of(3, -1.0, -1.0)];
+        MecanumDrive::new(self.length, self.track, diameters)
     }
 
     fn rollers(&self) -> Option<Rollers> {

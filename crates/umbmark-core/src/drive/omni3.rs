@@ -73,6 +73,8 @@ impl Kinematics for Omni3Drive {
 
     const FIRST_EFFECTS: [&'static str; 3] = ["front_diameter_ratio", "wheelbase", "roller_scale"];
 
+    const OWN_EFFECTS: &'static [&'static str] = &["rear_diameter_ratio"];
+
     const EFFECTS: &'static [&'static str] = &["wheelbase"];
 
     fn axle(&self) -> &DifferentialDrive {
@@ -93,6 +95,13 @@ impl Kinematics for Omni3Drive {
         let right = 2.0 * scale / (1.0 + fronts);
         let [a, b, c] = self.diameters;
         Omni3Drive::new(self.distance * distance, [a * right, b * right * fronts, c * scale])
+    }
+
+    /// For a ratio of the rear wheel's diameter to the mean of the front ones'; the mean of all stays.
+    fn also_corrected(&self, own: &[f64]) -> Result<Self, DriveError> {
+        let front = 3.0 / (2.0 + own[0]);
+        let [a, b, c] = self.diameters;
+        Omni3Drive::new(self.distance, [a * front, b * front, c * front * own[0]])
     }
 
     fn rollers(&self) -> Option<Rollers> {

@@ -96,6 +96,8 @@ impl Kinematics for Omni4Drive {
 
     const FIRST_EFFECTS: [&'static str; 3] = ["omni_side_ratio", "wheelbase", "roller_scale"];
 
+    const OWN_EFFECTS: &'static [&'static str] = &["omni_axle_ratio", "omni_pair_ratio"];
+
     const EFFECTS: &'static [&'static str] = &["wheelbase"];
 
     fn axle(&self) -> &DifferentialDrive {
@@ -118,6 +120,18 @@ impl Kinematics for Omni4Drive {
         let off = (sides - 1.0) / (sides + 1.0) / most;
         let wheel = |k: usize| self.diameters[k] * scale * (1.0 - off * to_the_left[k]);
         Omni4Drive::new(self.distance * distance, self.offset, std::array::from_fn(wheel))
+    }
+
+    /// For ratios of the diameters in front to those behind, and of the first and third wheel to the others.
+    fn also_corrected(&self, own: &[f64]) -> Result<Self, DriveError> {
+        let ahead = self.directions().map(libm::cos);
+        let most = libm::fmax(libm::fabs(ahead[0]), libm::fabs(ahead[1]));
+        let [axle, pair] = [own[0], own[1]].map(|ratio| (ratio - 1.0) / (ratio + 1.0));
+        let wheel = |k: usize| {
+            let of_pair = if k.is_multiple_of(2) { pair } else { -pair };
+            self.diameters[k] * (1.0 + axle / most * ahead[k]) * (1.0 + of_pair)
+        };
+        Omni4Drive::new(self.distance, self.offset, std::array::from_fn(wheel))
     }
 
     fn wheel_layout(&self) -> [f64; 2] {

@@ -281,6 +281,27 @@ fn every_drive_may_have_its_first_effects_whose_default_values_correct_nothing()
     }
 }
 
+/// Oracle: the odometry of a drive with these numbers.
+#[test]
+fn every_own_effect_becomes_numbers_with_which_the_odometry_is_right() {
+    for kind in DriveKind::ALL {
+        let robot = Robot { drive: kind.usual(), ..Robot::labmate() };
+        for name in robot.drive.own_effects() {
+            let entry = find(name).unwrap();
+            assert!(entry.drives().contains(*kind), "{name} of {}", kind.name());
+            let parameter = &entry.about.parameters[0];
+            let value = neutral(parameter, &robot) + 0.02;
+            let mut model = Model::new(&robot);
+            model.set(name, parameter.name, value).unwrap();
+            let corrected = model.corrected_robot().unwrap().drive;
+            assert_ne!(corrected, robot.drive, "{name} of {}", kind.name());
+            if kind.moves_sideways() {
+                assert_rolls_as(robot.drive, corrected, &[(name, parameter.name, value)]);
+            }
+        }
+    }
+}
+
 #[test]
 fn effects_that_look_alike_name_each_other() {
     for entry in CATALOGUE {

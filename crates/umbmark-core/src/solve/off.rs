@@ -74,9 +74,9 @@ impl Off {
     /// The parts of the error of the runs of a learnt model.
     pub(super) fn of(meter: &Meter, learnt: &Learnt) -> Off {
         let model = &learnt.model;
-        let first = model.robot().drive.first_effects();
+        let own = model.robot().drive.own_effects();
         let group = |name: &'static str, acts_on: Option<ActsOn>| match acts_on {
-            _ if first.contains(&name) => 1,
+            _ if own.contains(&name) => 1,
             Some(ActsOn::Reference | ActsOn::Start) => 0,
             _ => 2,
         };
@@ -119,8 +119,8 @@ impl Off {
 /// The largest error \[m\] of a learnt model with one number of the robot at an end of its interval; infinite where one has none.
 pub(super) fn at_ends_of_intervals(meter: &Meter, learnt: &Learnt, level: f64) -> f64 {
     let model = &learnt.model;
-    let first = model.robot().drive.first_effects();
-    let of_robot = learnt.diagnosis.fitted.iter().filter(|own| first.contains(&own.effect));
+    let own = model.robot().drive.own_effects();
+    let of_robot = learnt.diagnosis.fitted.iter().filter(|fitted| own.contains(&fitted.effect));
     let at_ends = |own: &Estimate| {
         let Some(interval) = own.interval(level) else { return f64::INFINITY };
         let at = |value: f64| {

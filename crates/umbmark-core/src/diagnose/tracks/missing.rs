@@ -19,6 +19,10 @@ pub(super) const FEWEST: usize = 2;
 pub(super) const WIDE: f64 = 2.0;
 const SURE: f64 = 0.2;
 
+/// Twice the logarithm of the likelihood by which an effect may be less likely than another of its class, and is added in its place: a number of
+/// the robot is.
+const NEAR: f64 = 2.0;
+
 /// What a fitted model is missing.
 pub(crate) struct Missing {
     /// The certified effect that would be added.
@@ -37,6 +41,7 @@ pub fn missing(exam: &Examination, options: &Options, refused: &[&str]) -> Missi
     let smooth = significance::smooths(exam, options).iter().find(|s| s.certified(options)).cloned();
     let enough = exam.fitted.observed.runs.len() >= FEWEST;
     let best = if enough { first_with_gain(exam, &findings, options, refused) } else { None };
+    let best = best.map(|best| as_number(exam, &findings, best, refused));
     let unexplained = smooth.filter(|smooth| !explains(exam, best, smooth) && smooth_gains(exam, smooth));
     let unsure = findings.iter().filter(|finding| finding.certified(options) && !is_sure(exam, finding, options));
     let name = |finding: &Finding| exam.asked[finding.answer.asked].effect().map(|effect| effect.about.name);
@@ -46,6 +51,17 @@ pub fn missing(exam: &Examination, options: &Options, refused: &[&str]) -> Missi
         asked: findings.iter().filter_map(|finding| class::suspect(exam, finding)).collect(),
         inseparable: unsure.filter_map(name).collect(),
     }
+}
+
+/// An effect that becomes a number of the robot, if these runs do not tell it from the one that was found; else that one.
+fn as_number<'a>(exam: &Examination, findings: &'a [Finding], found: &'a Finding, refused: &[&str]) -> &'a Finding {
+    let own = exam.fitted.model.robot().drive.own_effects();
+    let name = |asked: usize| exam.asked[asked].effect().map_or("", |effect| effect.about.name);
+    let is_number = |asked: usize| own.contains(&name(asked)) && !refused.contains(&name(asked));
+    let mut numbers = class::rivals(exam, found).into_iter().filter(|_| !is_number(found.answer.asked));
+    let rival = numbers.find(|rival| is_number(rival.asked) && rival.drop >= found.answer.drop - NEAR);
+    let same = |finding: &&Finding| rival.as_ref().is_some_and(|rival| rival.asked == finding.answer.asked);
+    findings.iter().find(same).unwrap_or(found)
 }
 
 /// Whether an effect explains as much as a smooth does, both tested beside the same columns.
