@@ -30,6 +30,7 @@ mod misread;
 mod notices;
 mod one_counter;
 mod one_way;
+mod one_wheel;
 mod own_clocks;
 mod returns;
 mod shared;
@@ -57,6 +58,7 @@ pub use counts_factor::CountsFactor;
 pub use faults::Fault;
 pub use misread::{Misread, Written};
 pub use notices::TOLD;
+pub use one_wheel::Column;
 pub use returns::{Coordinate, Deviant, OutlyingReturn, Returned};
 pub use suspicion::Suspicion;
 
@@ -251,9 +253,13 @@ impl Setup {
         let all = pooled(&seen);
         let (faults, reading) = faults::look(&all, robot);
         let given = Agreement::without_drift(&all, reading, wheelbase);
+        let disagrees = (0..2).any(|k| given.shown[k] && given.misfits[k] > faults::DOUBTFUL);
+        let of_columns = || {
+            let counter = if disagrees { one_counter::found(&seen, robot) } else { None };
+            counter.or_else(|| one_wheel::found(&seen, robot))
+        };
         if Fault::heading_factor(&faults) == 1.0
-            && (0..2).any(|k| given.shown[k] && given.misfits[k] > faults::DOUBTFUL)
-            && let Some(fault) = one_counter::found(&seen, robot)
+            && let Some(fault) = of_columns()
         {
             return Setup { faults: vec![fault], runs: seen.iter().map(named).collect(), ..Setup::default() };
         }

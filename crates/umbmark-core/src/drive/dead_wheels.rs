@@ -44,7 +44,8 @@ const ALL_WHEELS: &[&str] = &["wheel_diameter_1_m", "wheel_diameter_2_m", "wheel
 impl Kinematics for DeadWheelsDrive {
     const NAME: &'static str = "dead_wheels";
 
-    const ABOUT: &'static str = "Three wheels that are counted and not driven, two along and one across, on a robot that may also move sideways.";
+    const ABOUT: &'static str = "Three wheels that are counted and not driven, two along and one across, on a robot that may also move sideways. Those along count up \
+         as it drives ahead, the one across as it moves to the left.";
 
     const WHEELS: &'static [&'static str] = &["1", "2", "3"];
 

@@ -45,8 +45,7 @@ const ALL_WHEELS: &[&str] = &["wheel_diameter_1_m", "wheel_diameter_2_m", "wheel
 impl Kinematics for MecanumDrive {
     const NAME: &'static str = "mecanum";
 
-    const ABOUT: &'static str =
-        "Four driven wheels at the corners of a rectangle, with rollers at 45 degrees: it also moves sideways.";
+    const ABOUT: &'static str = "Four driven wheels at the corners of a rectangle, with rollers at 45 degrees: it also moves sideways. All count up as it drives ahead.";
 
     const WHEELS: &'static [&'static str] = &["1", "2", "3", "4"];
 

@@ -43,8 +43,7 @@ const ALL_WHEELS: &[&str] = &["wheel_diameter_1_m", "wheel_diameter_2_m", "wheel
 impl Kinematics for Omni3Drive {
     const NAME: &'static str = "omni3";
 
-    const ABOUT: &'static str =
-        "Three omni wheels, 120 degrees apart, that point round a circle: it also moves sideways.";
+    const ABOUT: &'static str = "Three omni wheels, 120 degrees apart, that point round a circle: it also moves sideways. All count up as it turns clockwise.";
 
     const WHEELS: &'static [&'static str] = &["1", "2", "3"];
 

@@ -52,8 +52,7 @@ const ALL_WHEELS: &[&str] = &["wheel_diameter_1_m", "wheel_diameter_2_m", "wheel
 impl Kinematics for Omni4Drive {
     const NAME: &'static str = "omni4";
 
-    const ABOUT: &'static str =
-        "Four omni wheels, 90 degrees apart, that point round a circle: it also moves sideways.";
+    const ABOUT: &'static str = "Four omni wheels, 90 degrees apart, that point round a circle: it also moves sideways. All count up as it turns clockwise.";
 
     const WHEELS: &'static [&'static str] = &["1", "2", "3", "4"];
 

@@ -2,6 +2,7 @@
 
 use super::agreement::{Agreement, Beside, Reading};
 use super::counts_factor::CountsFactor;
+use super::one_wheel::Column;
 use crate::drive::{DriveKind, Robot};
 use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
@@ -73,6 +74,10 @@ pub enum Fault {
     HeadingInRadians,
     /// Counts are those since the row before.
     Increments,
+    /// One wheel with rollers is counted backward, or two have each other's columns.
+    OneWheel(Column),
+    /// Positions and headings of the reference are mirrored.
+    ReferenceMirrored,
     /// Lengths of the reference are in another unit than their column says.
     LengthsIn {
         /// Its name.
@@ -179,6 +184,15 @@ impl Fault {
             Fault::PositionsMirrored => {
                 "the measured track is mirrored: x and y are of a left-handed frame, the headings are not".into()
             }
+            Fault::OneWheel(Column::Backward(name)) => format!(
+                "ticks_{name} counts backward: with the other sign, and not as it is, the wheels move as the reference does"
+            ),
+            Fault::OneWheel(Column::Exchanged([one, other])) => format!(
+                "ticks_{one} and ticks_{other} are exchanged: with the columns changed over, and not as they are, the wheels move as the reference does"
+            ),
+            Fault::ReferenceMirrored => {
+                "the measured track and its headings are mirrored: the robot drives to the other side and turns the other way by its wheels".into()
+            }
             Fault::PositionsExchanged => {
                 "x and y of the measured track are exchanged: it is mirrored, and a quarter turn from the headings".into()
             }
@@ -265,6 +279,15 @@ impl Fault {
                     .into()
             }
             Fault::PositionsMirrored => "write y_mirrored = true under [reference] in robot.toml".into(),
+            Fault::OneWheel(Column::Backward(name)) => format!("change the sign of the column ticks_{name} in all logs"),
+            Fault::OneWheel(Column::Exchanged([one, other])) => {
+                format!("change over the names of the columns ticks_{one} and ticks_{other} in all logs")
+            }
+            Fault::ReferenceMirrored => {
+                "write y_mirrored = true and heading_clockwise = true under [reference] in robot.toml (or, if the reference is right, change over the columns of the \
+                 wheels on the left and on the right)"
+                    .into()
+            }
             Fault::PositionsExchanged => "exchange the columns x_ref and y_ref, or their names".into(),
             Fault::HeadingInDegrees => "call the column theta_ref_deg (of a gyro, gyro_deg_s)".into(),
             Fault::LengthsIn { unit: unit @ ("mm" | "cm"), .. } => format!("call the columns x_ref_{unit} and y_ref_{unit}"),
